@@ -1,0 +1,90 @@
+// The mapper: a sensor stream in, an object map out. The top function is the paper's Fig. 1 on one screen.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/associate/associator.h"
+#include "mapper/detect/detector.h"
+#include "mapper/integrate/integrator.h"
+#include "mapper/localise/localiser.h"
+#include "mapper/mapper_config.h"
+#include "mapper/object_list.h"
+#include "mapper/segment/segmenter.h"
+#include "sensors/sensor_stream.h"
+
+namespace waretwin {
+
+// The five stages. Each is an interface with several makers; the harness may put the truth in place of any.
+struct Stages {
+  std::unique_ptr<Localiser> localiser;
+  std::unique_ptr<Detector> detector;
+  std::unique_ptr<Segmenter> segmenter;
+  std::unique_ptr<Associator> associator;
+  std::unique_ptr<Integrator> integrator;
+};
+
+struct TrajectoryPoint {
+  Stamp stamp = 0;
+  Pose X_WB = Pose::Identity();
+};
+
+// What one mapped frame took and found.
+struct FrameReport {
+  Stamp stamp = 0;
+  int frame_id = 0;
+  double localise_ms = 0, detect_ms = 0, segment_ms = 0, associate_ms = 0, integrate_ms = 0;
+  int detections = 0, segmented = 0;
+  double frame_ms() const { return localise_ms + detect_ms + segment_ms + associate_ms + integrate_ms; }
+};
+
+struct ObjectMap {
+  ObjectList objects;
+  std::unique_ptr<TsdfVolume> volume;
+  std::vector<TrajectoryPoint> trajectory;  // one point a scan
+  std::vector<FrameReport> frames;
+  int frames_seen = 0;             // camera frames in the stream
+  int frames_dropped_by_rate = 0;  // left out to keep the mapping rate
+  int frames_without_pose = 0;
+  std::map<std::string, int> rejected;  // reasons why detections came to nothing
+};
+
+class Mapper {
+ public:
+  Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info);
+  ~Mapper();
+
+  void consume(const SensorEvent& event);
+  const ObjectMap& map() const { return map_; }
+  ObjectMap finish();
+
+  // Called after each mapped frame with its detections and what became of them (debug pictures, per-frame records).
+  struct FrameResult {
+    const RgbdFrame& frame;
+    const Pose& X_WC;
+    const std::vector<Detection>& detections;
+    const Segmentation& segmentation;
+    const std::vector<int>& map_ids;
+  };
+  std::function<void(const FrameResult&)> on_frame;
+
+ private:
+  void localise(const OdometryReading& reading);
+  void localise(const LaserScan& scan);
+  void map_frame(const RgbdFrame& frame);
+  bool due(const RgbdFrame& frame);
+
+  MapperConfig config_;
+  Stages stages_;
+  StreamInfo info_;
+  ObjectMap map_;
+  double pending_localise_ms_ = 0.0;
+  std::optional<Stamp> first_frame_;
+  std::optional<std::int64_t> last_slot_;
+};
+
+}  // namespace waretwin

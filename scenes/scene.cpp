@@ -1,0 +1,19 @@
+#include "scenes/scene.h"
+
+namespace waretwin {
+
+std::size_t Scene::triangle_count() const {
+  std::size_t count = 0;
+  for (const Instance& instance : instances) count += meshes[static_cast<std::size_t>(instance.mesh)].triangles.size() / 3;
+  return count;
+}
+
+Eigen::AlignedBox3f Scene::bounds() const {
+  Eigen::AlignedBox3f box;
+  for (const Instance& instance : instances) {
+    for (const Eigen::Vector3f& p_M : meshes[static_cast<std::size_t>(instance.mesh)].positions) box.extend(instance.X_WM * p_M);
+  }
+  return box;
+}
+
+}  // namespace waretwin
