@@ -1,0 +1,42 @@
+// 2D laser scanners as configuration, with presets.
+#pragma once
+
+#include <string>
+
+#include "core/fields.h"
+#include "core/stamp.h"
+#include "sensors/mount.h"
+
+namespace waretwin {
+
+// Error of a range: a part that is drawn once per run and a part that is drawn for every beam.
+struct LaserNoise {
+  bool enabled = true;
+  // S300 data sheet: 28 mm at one sigma of which 20 mm are systematic; the rest is the random part.
+  double sigma_m = 0.008;    // standard deviation of the random part
+  double bias_max_m = 0.02;  // the systematic part is uniform in [-bias_max, bias_max], constant in a run
+  void visit(Fields& f);
+};
+
+// The defaults are those of preset sick_s300 (S300 Expert), mounted as in the paper's section 4.3: 0.3 m high at a front corner; offsets
+// and yaw come from the authors' own configuration.
+struct LaserConfig {
+  std::string preset = "sick_s300";
+  int beams = 541;
+  double field_deg = 270.0;  // symmetric about the forward axis, first beam on the right
+  double rate_hz = 25.0;     // mirror turns a second; a beam is measured when the mirror points at it
+  double range_min_m = 0.05, range_max_m = 30.0;
+  double range_step_m = 0.01;  // resolution of the output; 0 = none
+  LaserNoise noise;
+  Mount mount = {.x_m = 0.275, .y_m = 0.2, .z_m = 0.3, .yaw_deg = 43.9};
+
+  // Presets: sick_s300 (S300 Expert), ideal (same geometry without error). Throws Error naming the known ones.
+  static LaserConfig make(const std::string& preset);
+  double angle_min() const;        // radians
+  double angle_increment() const;  // radians
+  Stamp beam_interval() const;     // ns between neighbouring beams of one turn
+  // A `preset` that changes sets all other fields but the mount, before those that follow it.
+  void visit(Fields& f);
+};
+
+}  // namespace waretwin
