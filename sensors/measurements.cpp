@@ -1,10 +1,19 @@
 #include "sensors/measurements.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 
 namespace waretwin {
+
+void load_pictures(RgbdFrame& frame) {
+  if (!frame.load) return;
+  const auto load = std::move(frame.load);
+  frame.load = nullptr;
+  load(frame);
+  WARETWIN_CHECK(!frame.colour.empty() && frame.colour.size() == frame.depth.size(), "a loaded frame has colour and depth of one size");
+}
 
 cv::Mat depth_from_millimetres(const cv::Mat& millimetres) {
   WARETWIN_CHECK(millimetres.type() == CV_16UC1, "millimetres come as 16-bit integers");

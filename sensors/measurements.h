@@ -1,6 +1,7 @@
 // What sensors deliver: the value types that every source yields and the mapper consumes. Each holds exactly what a recording holds.
 #pragma once
 
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
@@ -11,7 +12,8 @@
 
 namespace waretwin {
 
-// One colour picture with depth registered to it.
+// One colour picture with depth registered to it. A source may leave the pictures empty and set `load` instead: frames that a mapper drops
+// to keep its rate then cost nothing. Call load_pictures before reading them.
 struct RgbdFrame {
   Stamp stamp = 0;
   std::string sensor;
@@ -19,7 +21,12 @@ struct RgbdFrame {
   cv::Mat depth;   // height x width, CV_32FC1, metres along the optical axis (z), 0 = invalid; whole millimetres
   // Pose that came with the recording, if any. Never set by the simulation.
   std::optional<Pose> recorded_X_WC;
+  // Makes or decodes colour and depth; valid until the stream's next event. Empty where the pictures are already there.
+  std::function<void(RgbdFrame&)> load;
 };
+
+// Fills colour and depth where they are still to be made. Throws what the source throws (a damaged image: Error).
+void load_pictures(RgbdFrame& frame);
 
 // One turn of a 2D laser. Beam i points at angle_min + i * angle_increment (radians, counter-clockwise about the laser's z) and was
 // measured at stamp + i * beam_interval.
