@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Installs what a build needs on Debian 12. Does nothing, quickly, where all is there. Needs root or sudo.
+#   ci/install.sh             what the build and the tests need
+#   ci/install.sh --tools     also clang-format and clang-tidy
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build ccache git ca-certificates
+  libembree-dev libtinygltf-dev libeigen3-dev libopencv-dev libpcl-dev libbullet-dev
+  libtbb-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libspdlog-dev librandom123-dev
+  libgtest-dev libbenchmark-dev zlib1g-dev
+)
+for argument in "$@"; do
+  case "$argument" in
+    --tools) packages+=(clang-format clang-tidy) ;;
+    *) echo "install.sh: unknown option '$argument'; expected --tools" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${packages[@]}"; do
+  [[ "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" == "install ok installed" ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "install.sh: all ${#packages[@]} packages are there"
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || { echo "install.sh: needs root or sudo to install: ${missing[*]}" >&2; exit 2; }
+  as_root=(sudo)
+fi
+echo "install.sh: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
