@@ -1,0 +1,2 @@
+set(MAPPER_PERCEPTION_SOURCES
+  segment/cuboid_search.cpp)
