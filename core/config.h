@@ -29,13 +29,16 @@ void read_config(const std::filesystem::path& file, const VisitFunction& visit);
 // The same for text; `name` stands for the file in messages.
 void read_config_text(const std::string& yaml, const std::filesystem::path& name, const VisitFunction& visit);
 
-// Applies settings in order; later ones win. Throws Error for a key that no visited field has, naming the nearest one.
+// Applies settings in one visit; of two for the same key the later one wins, and a preset never undoes what stands beside it. They
+// change what exists: an index beyond a list or a new name in a map is an Error. Throws Error for a key that no visited field has,
+// naming the nearest one.
 void apply_settings(const std::vector<Setting>& settings, const VisitFunction& visit);
 
 // All fields with their present values, as YAML text that read_config takes back.
 std::string write_config(const VisitFunction& visit);
 
-// All fields with type, range, default and documentation, one a line: what `--help-config` prints.
+// All fields with type, range, default and documentation, one a line: what `--help-config` prints. An empty list or map is shown by
+// one example element, which stays in the struct: give this function a struct of its own.
 std::string describe_config(const VisitFunction& visit);
 
 template <class T>
