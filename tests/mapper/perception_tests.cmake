@@ -1,0 +1,2 @@
+set(MAPPER_PERCEPTION_TESTS
+  localise_scan_matcher.cpp)
