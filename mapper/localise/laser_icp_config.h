@@ -18,8 +18,8 @@ struct ScanMatchConfig {
   double min_matched_fraction = 0.35;  // of the scan's points, below which a match is not believed
   double max_residual_m = 0.06;        // root mean square of the kept residuals, above which a match is not believed
   int max_iterations = 60;
-  double translation_epsilon_m = 1e-5;  // an iteration that moves less than both ends the search
-  double rotation_epsilon_deg = 5e-4;
+  double translation_epsilon_m = 1e-4;  // an iteration that moves less than both ends the search
+  double rotation_epsilon_deg = 3e-3;
 
   void visit(Fields& f) {
     f("lines", lines, "what a point is matched to: lines fitted over neighbouring reference points, or Censi's lines through two points",
