@@ -1,7 +1,14 @@
 set(MAPPER_PERCEPTION_SOURCES
+  associate/paper_associator.cpp
+  associate/similarity.cpp
   localise/laser_icp_localiser.cpp
   localise/odometry_history.cpp
   localise/point_to_line.cpp
   localise/scan_matcher.cpp
   localise/simple_localisers.cpp
-  segment/cuboid_search.cpp)
+  segment/clusters.cpp
+  segment/cuboid_search.cpp
+  segment/hsv_histogram.cpp
+  segment/paper_segmenter.cpp
+  segment/planes.cpp
+  segment/support_plane.cpp)

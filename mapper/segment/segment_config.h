@@ -60,6 +60,7 @@ struct SegmentConfig {
   bool outlier_removal = true;
   int outlier_neighbours = 50;  // k of the statistical outlier removal
   double outlier_sigmas = 3.0;  // 1.0 would take the rim of every face as well: its points have half the neighbours
+  bool recover_foot = true;     // points within the clearance above ground or support that lie inside the object's own rectangle come back
   double cluster_tolerance_m = 0.05;
   double cluster_fraction = 0.7;  // the paper's 70 %
   double heading_step_deg = 1.0;
@@ -76,6 +77,7 @@ struct SegmentConfig {
     f("outlier_removal", outlier_removal, "statistical outlier removal");
     f("outlier_neighbours", outlier_neighbours, "its number of neighbours", {.min = 1, .max = 1000});
     f("outlier_sigmas", outlier_sigmas, "its limit in standard deviations", {.min = 0, .max = 100});
+    f("recover_foot", recover_foot, "give back the points just above ground or support that lie inside the object's own rectangle");
     f("cluster_tolerance_m", cluster_tolerance_m, "points nearer than this belong to one cluster", {.min = 0.001, .max = 10});
     f("cluster_fraction", cluster_fraction, "share of all points that the one cluster must hold", {.min = 0, .max = 1});
     f("heading_step_deg", heading_step_deg, "step of the cuboid's heading search", {.min = 0.01, .max = 45});
