@@ -50,6 +50,16 @@ std::array<std::uint32_t, 4> RandomStream::words(std::uint64_t index, std::uint3
   return {out[0], out[1], out[2], out[3]};
 }
 
+void RandomStream::fill(std::uint64_t first, std::size_t count, std::array<std::uint32_t, 4>* out) const {
+  const r123::Philox4x32::key_type key = {{key_[0], key_[1]}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t index = first + i;
+    const r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), 0, 0}};
+    const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
+    out[i] = {words[0], words[1], words[2], words[3]};
+  }
+}
+
 double RandomStream::uniform(std::uint64_t index, std::uint32_t draw) const {
   const auto w = words(index, draw);
   const std::uint64_t bits = (static_cast<std::uint64_t>(w[0]) << 32 | w[1]) >> 11;

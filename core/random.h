@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -19,9 +20,12 @@ class RandomStream {
   // Four independent 32-bit words. `index` is the pixel or beam, `draw` counts what one pixel needs more than four words for.
   std::array<std::uint32_t, 4> words(std::uint64_t index, std::uint32_t draw = 0) const;
 
+  // The words of `count` neighbouring indices from `first`, all at draw 0: out[i] == words(first + i). For whole images.
+  void fill(std::uint64_t first, std::size_t count, std::array<std::uint32_t, 4>* out) const;
+
   // Uniform in [0, 1) with 53 random bits.
   double uniform(std::uint64_t index, std::uint32_t draw = 0) const;
-  // Two independent uniforms in [0, 1) with 32 random bits each.
+  // Two independent uniforms in [0, 1) with 24 random bits each.
   std::array<float, 2> uniform_pair(std::uint64_t index, std::uint32_t draw = 0) const;
   // Standard normal (Box-Muller), and two independent ones at the price of one.
   double normal(std::uint64_t index, std::uint32_t draw = 0) const;

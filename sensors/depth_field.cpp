@@ -1,0 +1,31 @@
+#include "sensors/depth_field.h"
+
+#include <cmath>
+
+#include "core/pose.h"
+
+namespace waretwin {
+
+bool in_depth_field(const DepthField& field, const Eigen::Vector3d& ray_C) {
+  const double tilt = to_radians(field.tilt_down_deg);
+  // Tilting the depth camera down turns its z axis towards the colour camera's y axis, which points down.
+  const double z = std::cos(tilt) * ray_C.z() + std::sin(tilt) * ray_C.y();
+  const double y = std::cos(tilt) * ray_C.y() - std::sin(tilt) * ray_C.z();
+  if (z <= 0.0) return false;
+  const double across = std::abs(ray_C.x() / z) / std::tan(to_radians(0.5 * field.horizontal_deg));
+  const double down = std::abs(y / z) / std::tan(to_radians(0.5 * field.vertical_deg));
+  if (across > 1.0 || down > 1.0) return false;
+  return !field.hexagonal || across + 0.5 * down <= 1.0;
+}
+
+cv::Mat depth_field_mask(const CameraConfig& camera) {
+  const Intrinsics intrinsics = camera.intrinsics();
+  cv::Mat mask(intrinsics.height, intrinsics.width, CV_8UC1);
+  for (int v = 0; v < mask.rows; ++v) {
+    auto* row = mask.ptr<std::uint8_t>(v);
+    for (int u = 0; u < mask.cols; ++u) row[u] = in_depth_field(camera.field, intrinsics.ray(u, v)) ? 255 : 0;
+  }
+  return mask;
+}
+
+}  // namespace waretwin
