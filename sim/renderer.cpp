@@ -1,0 +1,372 @@
+#include "sim/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "sim/direct_light.h"
+#include "sim/guided_filter.h"
+#include "sim/path_tracer.h"
+#include "sim/pixel_random.h"
+#include "sim/reflection.h"
+#include "sim/surfaces.h"
+#include "sim/tone_curve.h"
+
+namespace waretwin {
+
+namespace {
+
+// Pictures are made in tiles of 16 x 8 pixels, whose rays travel in packets of 4 x 2.
+constexpr int kTileWidth = 16, kTileHeight = 8, kTilePixels = kTileWidth * kTileHeight;
+constexpr int kPacketWidth = 4, kPacketHeight = 2;
+
+// Ambient light is blocked by what is nearer than this (metres), less so the farther it is.
+constexpr float kOcclusionReach = 1.6f;
+constexpr int kOcclusionRays = 2;
+constexpr int kShadowRadius = 2, kOcclusionRadius = 2;
+
+struct PixelOffset {
+  int x, y;
+};
+
+// Pixel of the i-th ray of a tile.
+constexpr std::array<PixelOffset, kTilePixels> make_tile_order() {
+  std::array<PixelOffset, kTilePixels> order{};
+  int i = 0;
+  for (int py = 0; py < kTileHeight; py += kPacketHeight) {
+    for (int px = 0; px < kTileWidth; px += kPacketWidth) {
+      for (int y = 0; y < kPacketHeight; ++y) {
+        for (int x = 0; x < kPacketWidth; ++x) order[static_cast<std::size_t>(i++)] = {px + x, py + y};
+      }
+    }
+  }
+  return order;
+}
+constexpr auto kTileOrder = make_tile_order();
+
+// Well spread points for the 4 x 4 pixels of a block, each block shifted at random: a rank-1 lattice in three dimensions (M. Roberts, "The
+// unreasonable effectiveness of quasirandom sequences", 2018), dealt out in the order of a 4 x 4 Bayer matrix. A filter as wide as a block
+// then sees nearly even samples.
+struct BlockSample {
+  float a, b, c;
+};
+BlockSample block_sample(std::uint32_t seed, int x, int y, int blocks_per_row, int round) {
+  static constexpr int kBayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  PixelRandom shift(seed, static_cast<std::uint32_t>((y / 4) * blocks_per_row + x / 4));
+  const float k = static_cast<float>(kBayer[(y & 3) * 4 + (x & 3)] + 16 * round);
+  const auto wrap = [](float v) { return v - std::floor(v); };
+  const float a = wrap(shift.uniform() + 0.8191725f * k);
+  const float b = wrap(shift.uniform() + 0.6710436f * k);
+  const float c = wrap(shift.uniform() + 0.5497005f * k);
+  return {std::min(a, 0.9999999f), std::min(b, 0.9999999f), std::min(c, 0.9999999f)};
+}
+
+cv::Vec3b tone_mapped_bgr(const Eigen::Vector3f& radiance) {
+  return {tone_mapped(radiance.z()), tone_mapped(radiance.y()), tone_mapped(radiance.x())};
+}
+
+}  // namespace
+
+struct Renderer::State {
+  State(std::shared_ptr<const RayCaster> caster, const RenderOptions& render_options);
+
+  std::shared_ptr<const RayCaster> ray_caster;
+  RenderOptions options;
+  Surfaces surfaces;
+  DirectLight lights;
+  std::vector<std::uint16_t> object_of_instance, class_of_instance;
+
+  // Of the picture being made, row-major.
+  int width = 0, height = 0;
+  std::vector<Hit> hits;
+  std::vector<Eigen::Vector3f> direct, ambient, emitted;
+  std::vector<float> visible, openness, scratch;
+  SurfaceGuide guide, half_guide;
+  std::vector<Eigen::Vector3f> half_positions, half_normals;
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  void cast_primary(const PixelRays& pixel_rays);
+  void write_geometry(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, FrameImages& images) const;
+  void shade(const PixelRays& pixel_rays, std::uint32_t seed);
+  void shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, std::vector<LitBy>& parts);
+  void find_openness(std::uint32_t seed);
+  void compose(cv::Mat& colour) const;
+  void trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const;
+};
+
+Renderer::State::State(std::shared_ptr<const RayCaster> caster, const RenderOptions& render_options)
+    : ray_caster(caster), options(render_options), surfaces(caster), lights(caster->scene().lights) {
+  const Scene& scene = ray_caster->scene();
+  const std::vector<std::string> names = class_names(scene);
+  for (const Instance& instance : scene.instances) {
+    if (instance.object < 0) {
+      object_of_instance.push_back(0);
+      class_of_instance.push_back(0);
+      continue;
+    }
+    const TrueObject& object = scene.objects[static_cast<std::size_t>(instance.object)];
+    if (object.id < 1 || object.id > 65535)
+      throw Error("object id " + std::to_string(object.id) + " does not fit an instance image; expected 1 to 65535");
+    object_of_instance.push_back(static_cast<std::uint16_t>(object.id));
+    class_of_instance.push_back(static_cast<std::uint16_t>(std::find(names.begin(), names.end(), object.class_name) - names.begin()));
+  }
+}
+
+void Renderer::State::cast_primary(const PixelRays& pixel_rays) {
+  hits.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+  parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
+    std::array<Ray, kTilePixels> tile_rays;
+    std::array<Hit, kTilePixels> tile_hits;
+    for (int top = static_cast<int>(begin) * kTileHeight; top < static_cast<int>(end) * kTileHeight; top += kTileHeight) {
+      for (int left = 0; left < width; left += kTileWidth) {
+        for (std::size_t i = 0; i < kTilePixels; ++i) tile_rays[i] = pixel_rays.at(left + kTileOrder[i].x, top + kTileOrder[i].y);
+        ray_caster->cast(tile_rays, tile_hits, Coherence::kCoherent);
+        for (std::size_t i = 0; i < kTilePixels; ++i) {
+          const int x = left + kTileOrder[i].x, y = top + kTileOrder[i].y;
+          if (x < width && y < height) hits[index(x, y)] = tile_hits[i];
+        }
+      }
+    }
+  });
+}
+
+void Renderer::State::write_geometry(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request,
+                                     FrameImages& images) const {
+  images.depth.create(height, width, CV_32FC1);
+  images.instances.create(height, width, CV_16UC1);
+  if (request.classes) images.classes.create(height, width, CV_16UC1);
+  if (request.normals) images.normals.create(height, width, CV_32FC3);
+  const Eigen::Matrix3f R_CW = X_WC.linear().transpose().cast<float>();
+  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      auto* depth = images.depth.ptr<float>(y);
+      auto* instances = images.instances.ptr<std::uint16_t>(y);
+      for (int x = 0; x < width; ++x) {
+        const Hit& hit = hits[index(x, y)];
+        depth[x] = hit.valid() ? hit.distance : 0.0f;
+        instances[x] = hit.valid() ? object_of_instance[static_cast<std::size_t>(hit.instance)] : std::uint16_t{0};
+        if (request.classes) {
+          images.classes.ptr<std::uint16_t>(y)[x] =
+              hit.valid() ? class_of_instance[static_cast<std::size_t>(hit.instance)] : std::uint16_t{0};
+        }
+        if (request.normals) {
+          Eigen::Vector3f n = Eigen::Vector3f::Zero();
+          if (hit.valid()) n = R_CW * surfaces.face_normal(pixel_rays.at(x, y), hit);
+          images.normals.ptr<cv::Vec3f>(y)[x] = {n.x(), n.y(), n.z()};
+        }
+      }
+    }
+  });
+}
+
+void Renderer::State::shade(const PixelRays& pixel_rays, std::uint32_t seed) {
+  direct.resize(hits.size());
+  ambient.resize(hits.size());
+  emitted.resize(hits.size());
+  visible.resize(hits.size());
+  guide.resize(width, height);
+  half_guide.resize((width + 1) / 2, (height + 1) / 2);
+  half_positions.resize(half_guide.depth.size());
+  half_normals.resize(half_guide.depth.size());
+  const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+  parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<LitBy> parts;
+    for (int top = static_cast<int>(begin) * kTileHeight; top < static_cast<int>(end) * kTileHeight; top += kTileHeight) {
+      for (int left = 0; left < width; left += kTileWidth) shade_tile(pixel_rays, seed, left, top, parts);
+    }
+  });
+  if (options.shadows) smooth(guide, kShadowRadius, visible, scratch);
+}
+
+void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, std::vector<LitBy>& parts) {
+  const Scene& scene = ray_caster->scene();
+  const int blocks_per_row = (width + 3) / 4;
+  struct Shadow {
+    int light;
+    std::size_t pixel;
+    Ray ray;
+  };
+  std::array<Shadow, kTilePixels> shadows;
+  std::size_t count = 0;
+  for (const PixelOffset& offset : kTileOrder) {
+    const int x = left + offset.x, y = top + offset.y;
+    if (x >= width || y >= height) continue;
+    const std::size_t p = index(x, y);
+    const std::size_t h = static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(half_guide.width) + static_cast<std::size_t>(x / 2);
+    const bool in_half = (x & 1) == 0 && (y & 1) == 0;
+    const Hit& hit = hits[p];
+    visible[p] = 1.0f;
+    if (!hit.valid()) {
+      direct[p] = ambient[p] = Eigen::Vector3f::Zero();
+      emitted[p] = scene.background;
+      guide.depth[p] = guide.tolerance[p] = 0.0f;
+      guide.normal[p] = 0;
+      if (in_half) {
+        half_guide.depth[h] = half_guide.tolerance[h] = 0.0f;
+        half_guide.normal[h] = 0;
+      }
+      continue;
+    }
+    const Ray ray = pixel_rays.at(x, y);
+    const SurfacePoint point = surfaces.at(ray, hit, pixel_rays.spread());
+    const Eigen::Vector3f v = -ray.direction.normalized();
+    const float n_dot_v = std::max(point.normal.dot(v), 1e-3f);
+    const Reflection reflection = reflection_of(point, n_dot_v);
+    direct[p] = lights.unshadowed(point, reflection, v, parts);
+    ambient[p] = scene.ambient.cwiseProduct(reflection.diffuse + reflection.glossy_albedo);
+    emitted[p] = point.emissive;
+
+    const float cosine = std::max(point.face_normal.dot(v), 0.05f);
+    guide.depth[p] = hit.distance;
+    guide.tolerance[p] = hit.distance * (1.5f * pixel_rays.spread() / cosine + 0.001f);
+    guide.normal[p] = packed_normal(point.face_normal.x(), point.face_normal.y(), point.face_normal.z());
+    if (in_half) {
+      half_guide.depth[h] = guide.depth[p];
+      half_guide.tolerance[h] = 2.0f * guide.tolerance[p];
+      half_guide.normal[h] = guide.normal[p];
+      half_positions[h] = lifted(point);
+      half_normals[h] = point.face_normal;
+    }
+    if (!options.shadows || parts.empty()) continue;
+    const BlockSample sample = block_sample(seed, x, y, blocks_per_row, 0);
+    float total = 0.0f;
+    const int chosen = DirectLight::choose(parts, sample.a, total);
+    if (chosen < 0) continue;
+    const int light = parts[static_cast<std::size_t>(chosen)].light;
+    shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
+  }
+  if (count == 0) return;
+  // Rays to one light travel together.
+  std::array<std::uint8_t, kTilePixels> order;
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint8_t>(i);
+  std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                   [&shadows](std::uint8_t a, std::uint8_t b) { return shadows[a].light < shadows[b].light; });
+  std::array<Ray, kTilePixels> rays_by_light;
+  std::array<std::uint8_t, kTilePixels> blocked;
+  for (std::size_t i = 0; i < count; ++i) rays_by_light[i] = shadows[order[i]].ray;
+  ray_caster->occluded(std::span(rays_by_light.data(), count), std::span(blocked.data(), count), Coherence::kCoherent);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (blocked[i]) visible[shadows[order[i]].pixel] = 0.0f;
+  }
+}
+
+void Renderer::State::find_openness(std::uint32_t seed) {
+  const int half_width = half_guide.width;
+  openness.assign(half_guide.depth.size(), 1.0f);
+  const int blocks_per_row = (half_width + 3) / 4;
+  constexpr std::size_t kRowsAtOnce = 4;
+  parallel_for(static_cast<std::size_t>(half_guide.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::vector<Ray> tile_rays;
+    std::vector<std::uint8_t> blocked;
+    std::vector<std::size_t> pixels;
+    for (int left = 0; left < half_width; left += kTileWidth) {
+      tile_rays.clear();
+      pixels.clear();
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+        for (int x = left; x < std::min(left + kTileWidth, half_width); ++x) {
+          const std::size_t h = static_cast<std::size_t>(y) * static_cast<std::size_t>(half_width) + static_cast<std::size_t>(x);
+          if (half_guide.depth[h] == 0.0f) continue;
+          Eigen::Vector3f a, b;
+          make_basis(half_normals[h], a, b);
+          pixels.push_back(h);
+          for (int k = 0; k < kOcclusionRays; ++k) {
+            const BlockSample sample = block_sample(seed, x, y, blocks_per_row, k);
+            const float radius = std::sqrt(sample.a), angle = 2.0f * std::numbers::pi_v<float> * sample.b;
+            Ray ray;
+            ray.origin = half_positions[h];
+            ray.direction =
+                radius * std::cos(angle) * a + radius * std::sin(angle) * b + std::sqrt(std::max(0.0f, 1.0f - sample.a)) * half_normals[h];
+            // A random reach makes blocking fade with distance at the price of one yes-or-no ray.
+            ray.far = kOcclusionReach * sample.c;
+            tile_rays.push_back(ray);
+          }
+        }
+      }
+      blocked.resize(tile_rays.size());
+      ray_caster->occluded(tile_rays, blocked, Coherence::kIncoherent);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        int hit = 0;
+        for (std::size_t k = 0; k < kOcclusionRays; ++k) hit += blocked[i * kOcclusionRays + k];
+        openness[pixels[i]] = 1.0f - static_cast<float>(hit) / kOcclusionRays;
+      }
+    }
+  });
+  smooth(half_guide, kOcclusionRadius, openness, scratch);
+}
+
+void Renderer::State::compose(cv::Mat& colour) const {
+  const auto exposure = static_cast<float>(options.exposure);
+  parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      auto* out = colour.ptr<cv::Vec3b>(y);
+      for (int x = 0; x < width; ++x) {
+        const std::size_t p = index(x, y);
+        const float open = options.occlusion && guide.depth[p] > 0.0f ? upsampled(guide, half_guide, openness, x, y) : 1.0f;
+        const Eigen::Vector3f radiance = emitted[p] + visible[p] * direct[p] + open * ambient[p];
+        out[x] = tone_mapped_bgr(exposure * radiance);
+      }
+    }
+  });
+}
+
+void Renderer::State::trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const {
+  const PathTracer tracer(*ray_caster, surfaces, lights, options.bounces);
+  const auto exposure = static_cast<float>(options.exposure);
+  parallel_for(static_cast<std::size_t>(height), 2, [&](std::size_t begin, std::size_t end) {
+    std::vector<LitBy> parts;
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      auto* out = colour.ptr<cv::Vec3b>(y);
+      for (int x = 0; x < width; ++x) {
+        PixelRandom random(seed, static_cast<std::uint32_t>(index(x, y)));
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        for (int s = 0; s < options.samples; ++s) {
+          const double dx = static_cast<double>(random.uniform()) - 0.5, dy = static_cast<double>(random.uniform()) - 0.5;
+          sum += tracer.radiance(pixel_rays.at(x + dx, y + dy), pixel_rays.spread(), random, parts);
+        }
+        out[x] = tone_mapped_bgr(sum * (exposure / static_cast<float>(options.samples)));
+      }
+    }
+  });
+}
+
+Renderer::Renderer(std::shared_ptr<const RayCaster> ray_caster, const RenderOptions& options) {
+  if (options.quality != "fast" && options.quality != "path") {
+    throw Error("quality '" + options.quality + "' is not known; expected fast or path");
+  }
+  state_ = std::make_unique<State>(std::move(ray_caster), options);
+}
+
+Renderer::~Renderer() = default;
+
+FrameImages Renderer::render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request) {
+  State& s = *state_;
+  s.width = intrinsics.width;
+  s.height = intrinsics.height;
+  const PixelRays pixel_rays(intrinsics, X_WC);
+  FrameImages images;
+  s.cast_primary(pixel_rays);
+  s.write_geometry(pixel_rays, X_WC, request, images);
+  if (!request.colour) return images;
+  images.colour.create(s.height, s.width, CV_8UC3);
+  const auto seed = [&request](const char* purpose) {
+    return picture_seed(RandomStream(request.seed, request.sensor, purpose, request.stamp));
+  };
+  if (s.options.quality == "path") {
+    s.trace_paths(pixel_rays, seed("render.path"), images.colour);
+    return images;
+  }
+  s.shade(pixel_rays, seed("render.shadow"));
+  if (s.options.occlusion) s.find_openness(seed("render.occlusion"));
+  s.compose(images.colour);
+  return images;
+}
+
+}  // namespace waretwin

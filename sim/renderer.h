@@ -1,0 +1,43 @@
+// Pictures of a hall.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/pose.h"
+#include "core/stamp.h"
+#include "sensors/intrinsics.h"
+#include "sim/frame_images.h"
+#include "sim/ray_caster.h"
+#include "sim/render_options.h"
+
+namespace waretwin {
+
+struct RenderRequest {
+  bool colour = true;
+  bool classes = false;
+  bool normals = false;
+  // Key of the random numbers; see RandomStream.
+  std::uint64_t seed = 1;
+  std::string sensor = "camera";
+  Stamp stamp = 0;
+};
+
+// Keeps buffers from one picture to the next: one Renderer renders one picture at a time (on all threads).
+class Renderer {
+ public:
+  Renderer(std::shared_ptr<const RayCaster> ray_caster, const RenderOptions& options);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // The same bytes for the same arguments, whatever was rendered before and at any thread count.
+  FrameImages render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace waretwin

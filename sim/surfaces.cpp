@@ -1,0 +1,190 @@
+#include "sim/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waretwin {
+
+namespace {
+
+Eigen::Vector3f unit(const Eigen::Vector3f& v, const Eigen::Vector3f& otherwise) {
+  const float squared = v.squaredNorm();
+  return squared > 1e-30f ? Eigen::Vector3f(v / std::sqrt(squared)) : otherwise;
+}
+
+// uv lengths per metre on each triangle: the square root of the ratio of areas.
+std::vector<float> density(const Mesh& mesh) {
+  std::vector<float> out;
+  if (mesh.uv[0].empty()) return out;
+  out.reserve(mesh.triangles.size() / 3);
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const std::uint32_t a = mesh.triangles[t], b = mesh.triangles[t + 1], c = mesh.triangles[t + 2];
+    const Eigen::Vector3f e1 = mesh.positions[b] - mesh.positions[a], e2 = mesh.positions[c] - mesh.positions[a];
+    const Eigen::Vector2f d1 = mesh.uv[0][b] - mesh.uv[0][a], d2 = mesh.uv[0][c] - mesh.uv[0][a];
+    const float area = e1.cross(e2).norm();
+    const float uv_area = std::abs(d1.x() * d2.y() - d1.y() * d2.x());
+    out.push_back(area > 1e-20f ? std::sqrt(uv_area / area) : 0.0f);
+  }
+  return out;
+}
+
+// Mean factor by which a transform stretches lengths.
+float mean_scale(const Eigen::Affine3f& X) { return std::cbrt(std::abs(X.linear().determinant())); }
+
+}  // namespace
+
+Surfaces::Surfaces(std::shared_ptr<const RayCaster> ray_caster) : ray_caster_(std::move(ray_caster)) {
+  const Scene& scene = ray_caster_->scene();
+  colour_samplers_.resize(scene.textures.size());
+  data_samplers_.resize(scene.textures.size());
+  for (const Material& material : scene.materials) {
+    MaterialUse use;
+    use.base_colour = make_use(material.base_colour_texture, TextureSampler::Encoding::kSrgb);
+    use.metallic_roughness = make_use(material.metallic_roughness_texture, TextureSampler::Encoding::kLinear);
+    use.normal = make_use(material.normal_texture, TextureSampler::Encoding::kLinear);
+    use.emissive = make_use(material.emissive_texture, TextureSampler::Encoding::kSrgb);
+    use.textured = use.base_colour.sampler || use.metallic_roughness.sampler || use.normal.sampler || use.emissive.sampler;
+    materials_.push_back(use);
+  }
+  for (const Mesh& mesh : scene.meshes) uv_density_.push_back(density(mesh));
+}
+
+Surfaces::Use Surfaces::make_use(const TextureUse& use, TextureSampler::Encoding encoding) {
+  Use out;
+  out.uv_set = use.uv_set;
+  out.transform = use.uv_transform;
+  out.scale = std::sqrt(std::abs(use.uv_transform.leftCols<2>().determinant()));
+  if (use.texture < 0) return out;
+  const auto index = static_cast<std::size_t>(use.texture);
+  auto& made = encoding == TextureSampler::Encoding::kSrgb ? colour_samplers_[index] : data_samplers_[index];
+  if (!made) made = std::make_unique<TextureSampler>(ray_caster_->scene().textures[index], encoding);
+  out.sampler = made.get();
+  return out;
+}
+
+Surfaces::Corners Surfaces::corners(const Mesh& mesh, const Hit& hit) const {
+  const std::uint32_t* i = &mesh.triangles[std::size_t{3} * static_cast<std::size_t>(hit.primitive)];
+  return {{i[0], i[1], i[2]}, {1.0f - hit.u - hit.v, hit.u, hit.v}};
+}
+
+Eigen::Vector2f Surfaces::uv(const Hit& hit, int set) const {
+  const Scene& scene = ray_caster_->scene();
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  const auto& uv = mesh.uv[set];
+  if (uv.empty()) return Eigen::Vector2f::Zero();
+  const Corners c = corners(mesh, hit);
+  return c.w[0] * uv[c.i[0]] + c.w[1] * uv[c.i[1]] + c.w[2] * uv[c.i[2]];
+}
+
+Eigen::Vector3f Surfaces::face_normal(const Ray& ray, const Hit& hit) const {
+  const Scene& scene = ray_caster_->scene();
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  const Eigen::Matrix3f linear = ray_caster_->transform(hit.instance).linear();
+  const Corners c = corners(mesh, hit);
+  const Eigen::Vector3f& a = mesh.positions[c.i[0]];
+  const Eigen::Vector3f n = (linear * (mesh.positions[c.i[1]] - a)).cross(linear * (mesh.positions[c.i[2]] - a));
+  const Eigen::Vector3f out = unit(n, -ray.direction.normalized());
+  return out.dot(ray.direction) > 0.0f ? Eigen::Vector3f(-out) : out;
+}
+
+Eigen::Vector4f Surfaces::sample(const Use& use, const Mesh& mesh, const Corners& c, float footprint_M, float uv_density) {
+  const auto& uv = mesh.uv[use.uv_set];
+  if (uv.empty()) return use.sampler->sample(use.transform.col(2), 0.0f);
+  const Eigen::Vector2f at = c.w[0] * uv[c.i[0]] + c.w[1] * uv[c.i[1]] + c.w[2] * uv[c.i[2]];
+  return use.sampler->sample(use.transform.leftCols<2>() * at + use.transform.col(2), footprint_M * uv_density * use.scale);
+}
+
+SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
+  const Scene& scene = ray_caster_->scene();
+  const Instance& instance = scene.instances[static_cast<std::size_t>(hit.instance)];
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+  const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+  const MaterialUse& use = materials_[static_cast<std::size_t>(mesh.material)];
+  const Eigen::Affine3f& X_WM = ray_caster_->transform(hit.instance);
+  const Eigen::Matrix3f linear = X_WM.linear();
+  const Corners c = corners(mesh, hit);
+
+  SurfacePoint point;
+  point.position = ray.at(hit.distance);
+  const Eigen::Vector3f& a = mesh.positions[c.i[0]];
+  const Eigen::Vector3f e1 = linear * (mesh.positions[c.i[1]] - a), e2 = linear * (mesh.positions[c.i[2]] - a);
+  const Eigen::Vector3f towards = -ray.direction;
+  point.face_normal = unit(e1.cross(e2), towards.normalized());
+  if (point.face_normal.dot(towards) < 0.0f) point.face_normal = -point.face_normal;
+  point.normal = point.face_normal;
+  if (!mesh.normals.empty()) {
+    const Eigen::Vector3f n_M = c.w[0] * mesh.normals[c.i[0]] + c.w[1] * mesh.normals[c.i[1]] + c.w[2] * mesh.normals[c.i[2]];
+    // The matrix of cofactors takes normals along, also where the transform scales unevenly.
+    Eigen::Matrix3f cofactors;
+    cofactors.col(0) = linear.col(1).cross(linear.col(2));
+    cofactors.col(1) = linear.col(2).cross(linear.col(0));
+    cofactors.col(2) = linear.col(0).cross(linear.col(1));
+    point.normal = unit(cofactors * n_M, point.face_normal);
+    if (point.normal.dot(point.face_normal) < 0.0f) point.normal = -point.normal;
+  }
+
+  point.base_colour = material.base_colour.head<3>();
+  if (!mesh.colours.empty()) {
+    point.base_colour = point.base_colour.cwiseProduct(
+        (c.w[0] * mesh.colours[c.i[0]] + c.w[1] * mesh.colours[c.i[1]] + c.w[2] * mesh.colours[c.i[2]]).head<3>());
+  }
+  point.metallic = material.metallic;
+  point.roughness = material.roughness;
+  point.emissive = material.emissive;
+  if (use.textured) {
+    // A compromise between the long and the short side of the pixel's footprint on a slanted surface.
+    const float length = ray.direction.norm();
+    const float slant = std::max(point.face_normal.dot(towards) / length, 0.05f);
+    const float footprint_M = hit.distance * length * spread / std::sqrt(slant) / std::max(mean_scale(X_WM), 1e-12f);
+    const auto& densities = uv_density_[static_cast<std::size_t>(instance.mesh)];
+    const float per_metre = densities.empty() ? 0.0f : densities[static_cast<std::size_t>(hit.primitive)];
+    if (use.base_colour.sampler) {
+      point.base_colour = point.base_colour.cwiseProduct(sample(use.base_colour, mesh, c, footprint_M, per_metre).head<3>());
+    }
+    if (use.metallic_roughness.sampler) {
+      const Eigen::Vector4f value = sample(use.metallic_roughness, mesh, c, footprint_M, per_metre);
+      point.roughness *= value.y();
+      point.metallic *= value.z();
+    }
+    if (use.emissive.sampler) {
+      point.emissive = point.emissive.cwiseProduct(sample(use.emissive, mesh, c, footprint_M, per_metre).head<3>());
+    }
+    if (use.normal.sampler) bend(point, use.normal, material.normal_scale, mesh, c, X_WM, footprint_M, per_metre);
+  }
+  point.base_colour = point.base_colour.cwiseMax(0.0f).cwiseMin(1.0f);
+  return point;
+}
+
+void Surfaces::bend(SurfacePoint& point, const Use& use, float normal_scale, const Mesh& mesh, const Corners& c,
+                    const Eigen::Affine3f& X_WM, float footprint_M, float uv_density) const {
+  const auto& uv = mesh.uv[use.uv_set];
+  if (uv.empty()) return;
+  const Eigen::Matrix3f linear = X_WM.linear();
+  Eigen::Vector3f tangent;
+  float handedness = 1.0f;
+  if (!mesh.tangents.empty()) {
+    const Eigen::Vector4f t = c.w[0] * mesh.tangents[c.i[0]] + c.w[1] * mesh.tangents[c.i[1]] + c.w[2] * mesh.tangents[c.i[2]];
+    tangent = linear * t.head<3>();
+    handedness = t.w() < 0.0f ? -1.0f : 1.0f;
+  } else {
+    const Eigen::Vector3f e1 = linear * (mesh.positions[c.i[1]] - mesh.positions[c.i[0]]);
+    const Eigen::Vector3f e2 = linear * (mesh.positions[c.i[2]] - mesh.positions[c.i[0]]);
+    const Eigen::Vector2f d1 = uv[c.i[1]] - uv[c.i[0]], d2 = uv[c.i[2]] - uv[c.i[0]];
+    const float determinant = d1.x() * d2.y() - d2.x() * d1.y();
+    if (std::abs(determinant) < 1e-20f) return;
+    tangent = (e1 * d2.y() - e2 * d1.y()) / determinant;
+    // glTF's bitangent runs against v.
+    const Eigen::Vector3f up = (e1 * d2.x() - e2 * d1.x()) / determinant;
+    handedness = point.normal.cross(tangent).dot(up) < 0.0f ? -1.0f : 1.0f;
+  }
+  tangent -= point.normal * point.normal.dot(tangent);
+  if (tangent.squaredNorm() < 1e-20f) return;
+  tangent.normalize();
+  const Eigen::Vector3f bitangent = handedness * point.normal.cross(tangent);
+  const Eigen::Vector4f stored = sample(use, mesh, c, footprint_M, uv_density);
+  const float x = (2.0f * stored.x() - 1.0f) * normal_scale, y = (2.0f * stored.y() - 1.0f) * normal_scale, z = 2.0f * stored.z() - 1.0f;
+  const Eigen::Vector3f bent = unit(x * tangent + y * bitangent + std::max(z, 0.0f) * point.normal, point.normal);
+  if (bent.dot(point.face_normal) > 0.0f) point.normal = bent;
+}
+
+}  // namespace waretwin

@@ -1,0 +1,169 @@
+#include "sim/texture_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+
+namespace waretwin {
+
+namespace {
+
+std::array<float, 256> make_decode_table() {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) {
+    const double s = i / 255.0;
+    table[static_cast<std::size_t>(i)] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  }
+  return table;
+}
+
+const std::array<float, 256>& decode_table() {
+  static const std::array<float, 256> table = make_decode_table();
+  return table;
+}
+
+std::array<float, 256> make_linear_table() {
+  std::array<float, 256> table{};
+  for (int i = 0; i < 256; ++i) table[static_cast<std::size_t>(i)] = static_cast<float>(i) / 255.0f;
+  return table;
+}
+
+const std::array<float, 256>& linear_table() {
+  static const std::array<float, 256> table = make_linear_table();
+  return table;
+}
+
+int wrapped(int i, int size, Texture::Wrap wrap) {
+  if (i >= 0 && i < size) return i;
+  switch (wrap) {
+    case Texture::Wrap::kClampToEdge:
+      return std::clamp(i, 0, size - 1);
+    case Texture::Wrap::kRepeat: {
+      const int m = i % size;
+      return m < 0 ? m + size : m;
+    }
+    case Texture::Wrap::kMirroredRepeat: {
+      int m = i % (2 * size);
+      if (m < 0) m += 2 * size;
+      return m < size ? m : 2 * size - 1 - m;
+    }
+  }
+  return 0;
+}
+
+// Texel coordinate of u * size, kept where an int can hold it whatever the file says.
+float bounded(float texel) { return std::isfinite(texel) ? std::clamp(texel, -1e8f, 1e8f) : 0.0f; }
+
+// The four texels around (u, v) and their weights.
+struct Taps {
+  int x0, x1, y0, y1;
+  float fx, fy;
+};
+
+Taps taps(const Eigen::Vector2f& uv, int width, int height, Texture::Wrap wrap_u, Texture::Wrap wrap_v, bool nearest) {
+  const float x = bounded(uv.x() * static_cast<float>(width));
+  const float y = bounded(uv.y() * static_cast<float>(height));
+  if (nearest) {
+    const int xi = wrapped(static_cast<int>(std::floor(x)), width, wrap_u);
+    const int yi = wrapped(static_cast<int>(std::floor(y)), height, wrap_v);
+    return {xi, xi, yi, yi, 0.0f, 0.0f};
+  }
+  const float xf = std::floor(x - 0.5f), yf = std::floor(y - 0.5f);
+  const int xi = static_cast<int>(xf), yi = static_cast<int>(yf);
+  return {wrapped(xi, width, wrap_u),
+          wrapped(xi + 1, width, wrap_u),
+          wrapped(yi, height, wrap_v),
+          wrapped(yi + 1, height, wrap_v),
+          x - 0.5f - xf,
+          y - 0.5f - yf};
+}
+
+}  // namespace
+
+float linear_from_srgb(std::uint8_t value) { return decode_table()[value]; }
+
+std::uint8_t srgb_from_linear(float value) {
+  const double x = std::clamp(static_cast<double>(value), 0.0, 1.0);
+  const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(s * 255.0));
+}
+
+float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv) {
+  const Taps t = taps(uv, texture.width, texture.height, texture.wrap_u, texture.wrap_v, texture.nearest);
+  const auto alpha = [&](int x, int y) {
+    return static_cast<float>(
+        texture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) + static_cast<std::size_t>(x)) + 3]);
+  };
+  const float top = alpha(t.x0, t.y0) + t.fx * (alpha(t.x1, t.y0) - alpha(t.x0, t.y0));
+  const float low = alpha(t.x0, t.y1) + t.fx * (alpha(t.x1, t.y1) - alpha(t.x0, t.y1));
+  return (top + t.fy * (low - top)) / 255.0f;
+}
+
+TextureSampler::TextureSampler(const Texture& texture, Encoding encoding)
+    : wrap_u_(texture.wrap_u), wrap_v_(texture.wrap_v), nearest_(texture.nearest), encoding_(encoding) {
+  WARETWIN_CHECK(texture.width > 0 && texture.height > 0, "a texture has texels");
+  WARETWIN_CHECK(texture.rgba.size() == std::size_t{4} * static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height),
+                 "a texture has four bytes a texel");
+  size_ = std::sqrt(static_cast<float>(texture.width) * static_cast<float>(texture.height));
+  levels_.push_back({texture.width, texture.height, texture.rgba});
+  while (levels_.back().width > 1 || levels_.back().height > 1) {
+    const Level finer = levels_.back();
+    add_level(finer);
+  }
+}
+
+void TextureSampler::add_level(const Level& finer) {
+  Level level;
+  level.width = std::max(1, finer.width / 2);
+  level.height = std::max(1, finer.height / 2);
+  level.rgba.resize(std::size_t{4} * static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+  const auto texel = [&finer](int x, int y) {
+    x = std::min(x, finer.width - 1);
+    y = std::min(y, finer.height - 1);
+    return &finer.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(finer.width) + static_cast<std::size_t>(x))];
+  };
+  for (int y = 0; y < level.height; ++y) {
+    for (int x = 0; x < level.width; ++x) {
+      const std::uint8_t* in[4] = {texel(2 * x, 2 * y), texel(2 * x + 1, 2 * y), texel(2 * x, 2 * y + 1), texel(2 * x + 1, 2 * y + 1)};
+      std::uint8_t* out =
+          &level.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x))];
+      for (int c = 0; c < 4; ++c) {
+        if (encoding_ == Encoding::kSrgb && c < 3) {
+          float sum = 0.0f;
+          for (const std::uint8_t* p : in) sum += decode_table()[p[c]];
+          out[c] = srgb_from_linear(0.25f * sum);
+        } else {
+          out[c] = static_cast<std::uint8_t>((in[0][c] + in[1][c] + in[2][c] + in[3][c] + 2) / 4);
+        }
+      }
+    }
+  }
+  levels_.push_back(std::move(level));
+}
+
+Eigen::Vector4f TextureSampler::sample(const Eigen::Vector2f& uv, float footprint) const {
+  const float texels = footprint * size_;
+  int index = 0;
+  if (texels > 1.4142135f) index = std::min(std::ilogb(texels * 1.4142135f), static_cast<int>(levels_.size()) - 1);
+  const Level& level = levels_[static_cast<std::size_t>(std::max(index, 0))];
+  const Taps t = taps(uv, level.width, level.height, wrap_u_, wrap_v_, nearest_ && index == 0);
+  const auto at = [&level](int x, int y) {
+    return &level.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x))];
+  };
+  const std::uint8_t* a = at(t.x0, t.y0);
+  const std::uint8_t* b = at(t.x1, t.y0);
+  const std::uint8_t* c = at(t.x0, t.y1);
+  const std::uint8_t* d = at(t.x1, t.y1);
+  const float wa = (1.0f - t.fx) * (1.0f - t.fy), wb = t.fx * (1.0f - t.fy), wc = (1.0f - t.fx) * t.fy, wd = t.fx * t.fy;
+  const auto& table = encoding_ == Encoding::kSrgb ? decode_table() : linear_table();
+  const auto& plain = linear_table();
+  return {wa * table[a[0]] + wb * table[b[0]] + wc * table[c[0]] + wd * table[d[0]],
+          wa * table[a[1]] + wb * table[b[1]] + wc * table[c[1]] + wd * table[d[1]],
+          wa * table[a[2]] + wb * table[b[2]] + wc * table[c[2]] + wd * table[d[2]],
+          wa * plain[a[3]] + wb * plain[b[3]] + wc * plain[c[3]] + wd * plain[d[3]]};
+}
+
+}  // namespace waretwin

@@ -1,0 +1,44 @@
+// Looking up textures: wrap modes, bilinear filtering, the sRGB curve, and smaller copies against aliasing.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace waretwin {
+
+// IEC 61966-2-1: a stored 8-bit value as linear light in [0, 1], and back (clamped and rounded).
+float linear_from_srgb(std::uint8_t value);
+std::uint8_t srgb_from_linear(float value);
+
+// Alpha in [0, 1] at full size; uv after the texture transform.
+float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv);
+
+// A texture with its pyramid of half-size copies. Keeps a reference to nothing.
+class TextureSampler {
+ public:
+  // How the stored numbers are read: colours through the sRGB curve, anything else (normals, roughness) as value / 255.
+  enum class Encoding { kSrgb, kLinear };
+  TextureSampler(const Texture& texture, Encoding encoding);
+
+  // Colour at uv (v = 0 is the top row). `footprint` is the width in uv units that one sample stands for; the copy whose texels are
+  // about that wide is filtered bilinearly. Linear values, alpha last.
+  Eigen::Vector4f sample(const Eigen::Vector2f& uv, float footprint) const;
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+  };
+  void add_level(const Level& finer);
+
+  std::vector<Level> levels_;
+  Texture::Wrap wrap_u_, wrap_v_;
+  bool nearest_;
+  Encoding encoding_;
+  float size_;  // geometric mean of width and height in texels
+};
+
+}  // namespace waretwin
