@@ -1,0 +1,124 @@
+#include "harness/score/score_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/cpu_features.h"
+#include "core/pose.h"
+#include "harness/version.h"
+
+namespace waretwin {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json objects_json(const ObjectListScore& score) {
+  Json list = Json::array();
+  for (const ObjectScore& row : score.objects) {
+    list.push_back({{"truth_id", row.truth_id},
+                    {"map_id", or_null(row.map_id)},
+                    {"class", row.class_name},
+                    {"iou3d", row.iou3d},
+                    {"e_trans_m", or_null(row.e_trans_m)},
+                    {"e_rot_deg", or_null(row.e_rot_deg)},
+                    {"visible_fraction", row.visible_fraction},
+                    {"counted", row.counted}});
+  }
+  return list;
+}
+
+Json summary_json(const ScoreSummary& summary) {
+  return {{"truth", summary.truth},
+          {"mapped", summary.mapped},
+          {"matched", summary.matched},
+          {"recall", or_null(summary.recall)},
+          {"precision", or_null(summary.precision)},
+          {"mean_iou3d", or_null(summary.mean_iou3d)},
+          {"mean_e_trans_m", or_null(summary.mean_e_trans_m)},
+          {"mean_e_rot_deg", or_null(summary.mean_e_rot_deg)},
+          {"ap50", or_null(summary.ap50)},
+          {"map_paper", or_null(summary.map_paper)}};
+}
+
+void add_objects(Json& json, const ComparedLists& objects) {
+  json["objects"] = objects_json(objects.plain);
+  json["summary"] = summary_json(objects.plain.summary);
+  json["objects_aligned"] = objects.aligned ? objects_json(*objects.aligned) : Json(nullptr);
+  json["summary_aligned"] = objects.aligned ? summary_json(objects.aligned->summary) : Json(nullptr);
+  json["alignment"] = nullptr;
+  if (objects.X_TM) {
+    const Eigen::Vector3d shift = objects.X_TM->translation();
+    json["alignment"] = {{"x_m", shift.x()}, {"y_m", shift.y()}, {"yaw_deg", to_degrees(yaw_of(*objects.X_TM))}};
+  }
+}
+
+Json trajectory_json(const TrajectoryScore& score) {
+  return {{"ate_rmse_m", score.ate_rmse_m},
+          {"ate_max_m", score.ate_max_m},
+          {"ate_mean_m", score.ate_mean_m},
+          {"rpe_trans_m", score.rpe_trans_m},
+          {"rpe_rot_deg", score.rpe_rot_deg},
+          {"poses", score.pairs}};
+}
+
+std::string text(const Json& json) { return json.dump(2) + "\n"; }
+
+}  // namespace
+
+std::string score_json(const RunScore& score) {
+  Json json;
+  json["schema"] = kScoreSchema;
+  json["scenario"] = score.scenario;
+  json["profile"] = score.profile;
+  json["seed"] = score.seed;
+  json["version"] = kVersion;
+  json["digest"] = score.digest;
+  json["cpu"] = cpu_features();
+  json["stages"] = score.stages;
+  add_objects(json, score.objects);
+  json["trajectory"] = nullptr;
+  if (score.trajectory) {
+    json["trajectory"] = trajectory_json(*score.trajectory);
+    json["trajectory"]["ate_aligned_rmse_m"] = score.trajectory_aligned ? Json(score.trajectory_aligned->ate_rmse_m) : Json(nullptr);
+    json["trajectory"]["ate_aligned_max_m"] = score.trajectory_aligned ? Json(score.trajectory_aligned->ate_max_m) : Json(nullptr);
+  }
+  json["timing_ms"] = Json::object();
+  for (const auto& [stage, timing] : score.timing_ms) {
+    json["timing_ms"][stage] = {{"median", timing.median}, {"p95", timing.p95}, {"max", timing.max}};
+  }
+  json["frames"] = {{"simulated", score.frames_simulated},
+                    {"mapped", score.frames_mapped},
+                    {"dropped", score.frames_dropped},
+                    {"without_pose", score.frames_without_pose}};
+  json["rejected"] = score.rejected;
+  json["realtime_factor"] = score.realtime_factor;
+  json["peak_rss_mb"] = score.peak_rss_mb;
+  return text(json);
+}
+
+std::string score_json(const ComparedLists& objects) {
+  Json json;
+  json["schema"] = kScoreSchema;
+  json["version"] = kVersion;
+  add_objects(json, objects);
+  return text(json);
+}
+
+std::string score_json(const TrajectoryScore& plain, const TrajectoryScore& aligned) {
+  Json json;
+  json["schema"] = kScoreSchema;
+  json["version"] = kVersion;
+  json["trajectory"] = trajectory_json(aligned);
+  json["trajectory"]["alignment"] = "se3";
+  json["trajectory"]["ate_unaligned_rmse_m"] = plain.ate_rmse_m;
+  json["trajectory"]["ate_unaligned_max_m"] = plain.ate_max_m;
+  return text(json);
+}
+
+}  // namespace waretwin
