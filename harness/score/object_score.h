@@ -21,9 +21,9 @@ struct ObjectScore {
   int truth_id = 0;
   std::optional<int> map_id;  // the assigned mapped object
   std::string class_name;
-  double iou3d = 0.0;                // 0 without a partner
-  std::optional<double> e_trans_m;   // distance of the centres; nothing without a partner
-  std::optional<double> e_rot_deg;   // in [0, 90], [0, 45] for square boxes
+  double iou3d = 0.0;               // 0 without a partner
+  std::optional<double> e_trans_m;  // distance of the centres; nothing without a partner
+  std::optional<double> e_rot_deg;  // in [0, 90], [0, 45] for square boxes
   double visible_fraction = 1.0;
   bool counted = true;  // visible_fraction reaches the rule's minimum
 };
@@ -34,9 +34,9 @@ struct ScoreSummary {
   int mapped = 0;   // mapped objects that count: of a class that the truth names, not assigned to a true object that does not count
   int matched = 0;  // counted pairs with IoU >= match_iou
   std::optional<double> recall, precision;
-  std::optional<double> mean_iou3d;                  // over counted true objects, an unassigned one as 0
+  std::optional<double> mean_iou3d;                      // over counted true objects, an unassigned one as 0
   std::optional<double> mean_e_trans_m, mean_e_rot_deg;  // over counted pairs
-  std::optional<double> ap50;       // area under the precision-recall curve, averaged over classes
+  std::optional<double> ap50;                            // area under the precision-recall curve, averaged over classes
   std::optional<double> map_paper;  // the paper's mAP: TP / (TP + FP) a class, averaged; a class of which nothing was mapped gives 0
 };
 
@@ -47,6 +47,7 @@ struct ObjectListScore {
 
 // Pairs are assigned within a class by largest total IoU, among those with IoU > 0 and centres near enough. Mapped objects of classes that
 // the truth does not name are left out. All cuboids must name the same frame (Error otherwise).
-ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth, const ScoringRules& rules = {});
+ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth,
+                              const ScoringRules& rules = {});
 
 }  // namespace waretwin

@@ -25,7 +25,8 @@ struct ComparedLists {
   std::optional<ObjectListScore> aligned;
   std::optional<Pose> X_TM;  // the motion
 };
-ComparedLists compare_lists(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth, const ScoringRules& rules = {});
+ComparedLists compare_lists(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth,
+                            const ScoringRules& rules = {});
 
 struct RunScore {
   std::string scenario, profile;

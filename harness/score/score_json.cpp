@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/cpu_features.h"
 #include "core/pose.h"
 #include "harness/version.h"
 
@@ -59,12 +58,8 @@ void add_objects(Json& json, const ComparedLists& objects) {
 }
 
 Json trajectory_json(const TrajectoryScore& score) {
-  return {{"ate_rmse_m", score.ate_rmse_m},
-          {"ate_max_m", score.ate_max_m},
-          {"ate_mean_m", score.ate_mean_m},
-          {"rpe_trans_m", score.rpe_trans_m},
-          {"rpe_rot_deg", score.rpe_rot_deg},
-          {"poses", score.pairs}};
+  return {{"ate_rmse_m", score.ate_rmse_m},   {"ate_max_m", score.ate_max_m},     {"ate_mean_m", score.ate_mean_m},
+          {"rpe_trans_m", score.rpe_trans_m}, {"rpe_rot_deg", score.rpe_rot_deg}, {"poses", score.pairs}};
 }
 
 std::string text(const Json& json) { return json.dump(2) + "\n"; }
@@ -79,7 +74,6 @@ std::string score_json(const RunScore& score) {
   json["seed"] = score.seed;
   json["version"] = kVersion;
   json["digest"] = score.digest;
-  json["cpu"] = cpu_features();
   json["stages"] = score.stages;
   add_objects(json, score.objects);
   json["trajectory"] = nullptr;

@@ -12,8 +12,11 @@ struct PaperRow {
   const char* id;
   double iou3d, e_trans_m, e_rot_deg;
 };
-constexpr PaperRow kPaper[] = {
-    {"1", 0.7446, 0.058, 3.4}, {"2", 0.7140, 0.060, 0.9}, {"3", 0.8061, 0.029, 1.6}, {"4", 0.9056, 0.035, 1.0}, {"Average", 0.7925, 0.045, 1.7}};
+constexpr PaperRow kPaper[] = {{"1", 0.7446, 0.058, 3.4},
+                               {"2", 0.7140, 0.060, 0.9},
+                               {"3", 0.8061, 0.029, 1.6},
+                               {"4", 0.9056, 0.035, 1.0},
+                               {"Average", 0.7925, 0.045, 1.7}};
 
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
   char buffer[256];
@@ -46,7 +49,8 @@ std::string rows(const ObjectListScore& score) {
   text += "| Average | | " + number("%.4f", s.mean_iou3d) + " | " + number("%.3f", s.mean_e_trans_m) + " | " +
           number("%.1f", s.mean_e_rot_deg) + " | |\n";
   text += "\n" + std::to_string(s.matched) + " of " + std::to_string(s.truth) + " objects matched (IoU >= 0.5), " +
-          std::to_string(s.mapped) + " mapped; mAP as in the paper " + number("%.2f", s.map_paper) + ", AP50 " + number("%.2f", s.ap50) + ".\n";
+          std::to_string(s.mapped) + " mapped; mAP as in the paper " + number("%.2f", s.map_paper) + ", AP50 " + number("%.2f", s.ap50) +
+          ".\n";
   return text;
 }
 

@@ -20,8 +20,8 @@ struct Trajectory {
   bool has_stamps = true;
 };
 
-// Tells the two forms apart by the numbers a row (8 or 12). Lines that start with # and empty lines are left out. Throws Error with file and
-// line for a wrong count, text that is not a number, a zero quaternion, stamps that go back, or a file without poses.
+// Tells the two forms apart by the numbers a row (8 or 12). Lines that start with # and empty lines are left out. Throws Error with file
+// and line for a wrong count, text that is not a number, a zero quaternion, stamps that go back, or a file without poses.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 // TUM text; stamps in seconds with nine decimals, so that they come back exactly.

@@ -23,8 +23,7 @@ struct TrajectoryScore {
 
 // Estimated and true poses that belong together: every pose of the shorter list with the nearest stamp of the other one, where that is at
 // most `max_difference` away. Without stamps (KITTI) by row; the lists must then be equally long. Throws Error where nothing matches.
-std::vector<std::pair<Pose, Pose>> associate_poses(const Trajectory& estimate, const Trajectory& truth,
-                                                   Stamp max_difference = 10'000'000);
+std::vector<std::pair<Pose, Pose>> associate_poses(const Trajectory& estimate, const Trajectory& truth, Stamp max_difference = 10'000'000);
 
 // The rigid motion X_TE that lays the estimated positions over the true ones. For positions on one line the rotation about it is the
 // smallest possible by the decomposition, not determined by the data.
