@@ -1,3 +1,6 @@
 set(MAPPER_INTEGRATE_SOURCES
+  integrate/free_space.cpp
+  integrate/grouped_ray_integrator.cpp
   integrate/label_counts.cpp
+  integrate/point_groups.cpp
   integrate/tsdf_volume.cpp)
