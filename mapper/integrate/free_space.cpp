@@ -54,7 +54,9 @@ class DepthPyramid {
     while (level + 1 < static_cast<int>(levels_.size()) && static_cast<float>(4 << level) < 2.0f * radius) ++level;
     const Level& tiles = levels_[static_cast<std::size_t>(level)];
     const float per_pixel = 1.0f / static_cast<float>(4 << level);
-    const auto tile = [&](float pixel, int count) { return std::clamp(static_cast<int>(std::floor((pixel + 0.5f) * per_pixel)), 0, count - 1); };
+    const auto tile = [&](float pixel, int count) {
+      return std::clamp(static_cast<int>(std::floor((pixel + 0.5f) * per_pixel)), 0, count - 1);
+    };
     const int x0 = tile(u - radius, tiles.width), x1 = tile(u + radius, tiles.width);
     const int y0 = tile(v - radius, tiles.height), y1 = tile(v + radius, tiles.height);
     Range range;
@@ -72,7 +74,9 @@ class DepthPyramid {
   struct Level {
     int width = 0, height = 0;
     std::vector<float> smallest, largest;
-    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); }
+    std::size_t at(int x, int y) const {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
     void allocate() {
       smallest.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kFar);
       largest.assign(smallest.size(), 0.0f);
@@ -159,13 +163,15 @@ class Carving {
     std::uint64_t any = 0;
     for (int z = 0; z < 8; ++z) {
       for (int y = 0; y < 8; ++y) {
-        const Eigen::Vector3f start = centre + per_voxel_ * Eigen::Vector3f(-3.5f, static_cast<float>(y) - 3.5f, static_cast<float>(z) - 3.5f);
+        const Eigen::Vector3f start =
+            centre + per_voxel_ * Eigen::Vector3f(-3.5f, static_cast<float>(y) - 3.5f, static_cast<float>(z) - 3.5f);
         for (int x = 0; x < 8; ++x) {
           const Eigen::Vector3f p = start + per_voxel_.col(0) * static_cast<float>(x);
           const float near = p.z() - radius;
           if (near <= radius || p.z() > max_depth_) continue;
           const auto [u, v] = pixel(p);
-          if (u < -0.5f || v < -0.5f || u >= static_cast<float>(intrinsics_.width) - 0.5f || v >= static_cast<float>(intrinsics_.height) - 0.5f) {
+          if (u < -0.5f || v < -0.5f || u >= static_cast<float>(intrinsics_.width) - 0.5f ||
+              v >= static_cast<float>(intrinsics_.height) - 0.5f) {
             continue;
           }
           const std::uint64_t seen = pyramid_.range(u, v, focal_ * radius / near).smallest > p.z() + margin_;

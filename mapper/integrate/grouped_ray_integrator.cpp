@@ -78,7 +78,8 @@ void traverse(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Visit&& visit)
   }
 }
 
-Piece cast_rays(const std::vector<PointGroup>& groups, std::size_t begin, std::size_t end, const Eigen::Vector3d& p_WC, const TsdfConfig& config) {
+Piece cast_rays(const std::vector<PointGroup>& groups, std::size_t begin, std::size_t end, const Eigen::Vector3d& p_WC,
+                const TsdfConfig& config) {
   Piece piece;
   std::vector<Update> updates;
   updates.reserve((end - begin) * 16);
@@ -110,7 +111,7 @@ Piece cast_rays(const std::vector<PointGroup>& groups, std::size_t begin, std::s
 
 // All that one frame does to one block.
 struct BlockWork {
-  std::size_t position = 0;  // of the block in the volume
+  std::size_t position = 0;                                    // of the block in the volume
   std::vector<std::pair<std::uint32_t, std::uint16_t>> parts;  // piece, block in its list; ascending
 };
 
@@ -209,9 +210,8 @@ class Application {
 
 void integrate_surfaces(const std::vector<PointGroup>& groups, const Eigen::Vector3d& p_WC, const TsdfConfig& config, TsdfVolume& volume) {
   std::vector<Piece> pieces((groups.size() + kRaysPerPiece - 1) / kRaysPerPiece);
-  parallel_for(groups.size(), kRaysPerPiece, [&](std::size_t begin, std::size_t end) {
-    pieces[begin / kRaysPerPiece] = cast_rays(groups, begin, end, p_WC, config);
-  });
+  parallel_for(groups.size(), kRaysPerPiece,
+               [&](std::size_t begin, std::size_t end) { pieces[begin / kRaysPerPiece] = cast_rays(groups, begin, end, p_WC, config); });
   const std::vector<BlockWork> work = gather_work(pieces, volume);
   const Application application(config);
   parallel_for(work.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -243,8 +243,9 @@ void GroupedRayIntegrator::integrate(const RgbdFrame& frame, const Intrinsics& i
                  "frame of another size than its intrinsics");
   WARETWIN_CHECK(labels.empty() || labels.size() == pixels, "one label per pixel");
   if (volume.voxel_m() != config_.voxel_m || volume.config().truncation_voxels != config_.truncation_voxels) {
-    throw Error("tsdf.voxel_m, tsdf.truncation_voxels: " + std::to_string(config_.voxel_m) + ", " + std::to_string(config_.truncation_voxels) +
-                "; expected those of the map, " + std::to_string(volume.voxel_m()) + ", " + std::to_string(volume.config().truncation_voxels));
+    throw Error("tsdf.voxel_m, tsdf.truncation_voxels: " + std::to_string(config_.voxel_m) + ", " +
+                std::to_string(config_.truncation_voxels) + "; expected those of the map, " + std::to_string(volume.voxel_m()) + ", " +
+                std::to_string(volume.config().truncation_voxels));
   }
   integrate_surfaces(group_points(frame, intrinsics, labels, X_WC, config_), X_WC.translation(), config_, volume);
   if (config_.carve) record_free_space(find_free_space(frame, intrinsics, X_WC, config_), volume);

@@ -3,8 +3,9 @@
 // All points of a frame that fall into one voxel are one group: mean position (weighted as below), mean colour, and the label that most
 // of them carry (of equally many the smallest). One ray a group runs from the camera's centre through the mean position and updates
 // the voxels it crosses between one truncation distance before and one behind it:
-//   distance d = |p| - c . p / |p|   with p the mean position and c the voxel's centre, both from the camera's centre, cut to +- truncation;
-//   weight   w = sum of 1 / depth^2 over the group's points (or their number), falling linearly to 0 from one voxel behind the surface
+//   distance d = |p| - c . p / |p|   with p the mean position and c the voxel's centre, both from the camera's centre, cut to +-
+//   truncation; weight   w = sum of 1 / depth^2 over the group's points (or their number), falling linearly to 0 from one voxel behind the
+//   surface
 //                to the truncation distance behind it;
 //   both averaged into the voxel by weight, as is the colour.
 // Eq. (6): a voxel's count of a label rises by one in a frame, however many rays with that label pass it within the label band.

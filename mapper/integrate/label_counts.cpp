@@ -18,9 +18,9 @@ std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 std::vector<LabelCounts::Entry>::const_iterator LabelCounts::position(int voxel, std::int32_t label) const {
-  return std::lower_bound(further_.begin(), further_.end(), std::make_tuple(voxel, label), [](const Entry& e, const std::tuple<int, std::int32_t>& key) {
-    return std::make_tuple(static_cast<int>(e.voxel), e.label) < key;
-  });
+  return std::lower_bound(
+      further_.begin(), further_.end(), std::make_tuple(voxel, label),
+      [](const Entry& e, const std::tuple<int, std::int32_t>& key) { return std::make_tuple(static_cast<int>(e.voxel), e.label) < key; });
 }
 
 void LabelCounts::add(int voxel, std::int32_t label, std::uint32_t times) {

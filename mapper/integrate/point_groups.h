@@ -14,11 +14,11 @@
 namespace waretwin {
 
 struct PointGroup {
-  Eigen::Vector3i voxel;              // of the volume
-  Eigen::Vector3f mean;               // weighted mean position in metres from the camera's centre, axes of the world
-  float weight = 0.0f;                // sum over the group's points
+  Eigen::Vector3i voxel;                    // of the volume
+  Eigen::Vector3f mean;                     // weighted mean position in metres from the camera's centre, axes of the world
+  float weight = 0.0f;                      // sum over the group's points
   std::array<std::uint8_t, 3> colour = {};  // mean; red, green, blue
-  std::int32_t label = 0;             // of most of its points; of equally many the smallest
+  std::int32_t label = 0;                   // of most of its points; of equally many the smallest
   std::uint32_t points = 0;
 };
 

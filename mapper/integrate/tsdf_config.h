@@ -20,7 +20,8 @@ struct TsdfConfig {
 
   void visit(Fields& f) {
     f("voxel_m", voxel_m, "edge of a voxel", {.min = 0.002, .max = 1.0});
-    f("truncation_voxels", truncation_voxels, "distances are kept up to this many voxels before and behind a surface", {.min = 1, .max = 32});
+    f("truncation_voxels", truncation_voxels, "distances are kept up to this many voxels before and behind a surface",
+      {.min = 1, .max = 32});
     f("label_band_voxels", label_band_voxels, "voxels this near to a measured surface count its label (eq. 6)", {.min = 0.5, .max = 32});
     f("inverse_square_weight", inverse_square_weight, "a point weighs 1 / depth^2; false: all points weigh 1");
     f("max_weight", max_weight, "a voxel's weight grows no further; lower forgets faster", {.min = 1, .max = 1e9});

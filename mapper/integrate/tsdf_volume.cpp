@@ -56,7 +56,8 @@ SurfaceVoxels& TsdfVolume::ensure_surface(std::size_t position) {
 std::vector<std::size_t> TsdfVolume::sorted_positions() const {
   std::vector<std::size_t> order(blocks_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key_of(blocks_[a]->index) < key_of(blocks_[b]->index); });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return key_of(blocks_[a]->index) < key_of(blocks_[b]->index); });
   return order;
 }
 

@@ -20,10 +20,10 @@
 namespace waretwin {
 
 struct TsdfVoxel {
-  float distance = 0.0f;                     // metres to the surface, > 0 before it, within +- truncation; unset while weight is 0
-  float weight = 0.0f;                       // sum of the weights of what was averaged; 0: no surface near
-  std::array<std::uint8_t, 3> colour = {};   // red, green, blue
-  std::uint8_t surface_frames = 0;           // frames that put a surface near here, up to 255
+  float distance = 0.0f;                    // metres to the surface, > 0 before it, within +- truncation; unset while weight is 0
+  float weight = 0.0f;                      // sum of the weights of what was averaged; 0: no surface near
+  std::array<std::uint8_t, 3> colour = {};  // red, green, blue
+  std::uint8_t surface_frames = 0;          // frames that put a surface near here, up to 255
 };
 
 // The voxels of a block that has a surface in or near it.
@@ -33,8 +33,8 @@ struct SurfaceVoxels {
 };
 
 struct TsdfBlock {
-  Eigen::Vector3i index;                          // voxels 8 * index to 8 * index + 7 on each axis
-  std::unique_ptr<SurfaceVoxels> surface;         // none in blocks that were only seen to be free
+  Eigen::Vector3i index;                           // voxels 8 * index to 8 * index + 7 on each axis
+  std::unique_ptr<SurfaceVoxels> surface;          // none in blocks that were only seen to be free
   std::array<std::uint8_t, 512> free_frames = {};  // frames that saw through the voxel, up to 255
 };
 

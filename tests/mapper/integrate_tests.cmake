@@ -1,0 +1,3 @@
+set(MAPPER_INTEGRATE_TESTS
+  integrate_label_counts.cpp
+  integrate_reference.cpp)
