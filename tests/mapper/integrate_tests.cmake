@@ -1,3 +1,4 @@
 set(MAPPER_INTEGRATE_TESTS
   integrate_label_counts.cpp
-  integrate_reference.cpp)
+  integrate_reference.cpp
+  mesh_marching_cubes.cpp)
