@@ -1,0 +1,38 @@
+#include "sim/laser_scanner.h"
+
+#include <cmath>
+#include <vector>
+
+namespace waretwin {
+
+LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, const std::string& sensor, Stamp stamp,
+                     const std::function<Pose(Stamp)>& X_WB) {
+  LaserScan scan;
+  scan.stamp = stamp;
+  scan.sensor = sensor;
+  scan.angle_min = config.angle_min();
+  scan.angle_increment = config.angle_increment();
+  scan.beam_interval = config.beam_interval();
+  scan.range_min = config.range_min_m;
+  scan.range_max = config.range_max_m;
+  const Pose X_BL = config.mount.X_BL();
+  const auto beams = static_cast<std::size_t>(config.beams);
+  std::vector<Ray> rays(beams);
+  for (std::size_t i = 0; i < beams; ++i) {
+    const Pose X_WL = X_WB(stamp + static_cast<Stamp>(i) * scan.beam_interval) * X_BL;
+    const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    rays[i].origin = X_WL.translation().cast<float>();
+    rays[i].direction = (X_WL.linear() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)).cast<float>();
+    // Light that meets a surface nearer than the first measurable range is lost, so rays start at the scanner.
+    rays[i].far = static_cast<float>(config.range_max_m);
+  }
+  std::vector<Hit> hits(beams);
+  ray_caster.cast(rays, hits, Coherence::kCoherent);
+  scan.ranges.resize(beams, 0.0f);
+  for (std::size_t i = 0; i < beams; ++i) {
+    if (hits[i].valid() && hits[i].distance >= static_cast<float>(config.range_min_m)) scan.ranges[i] = hits[i].distance;
+  }
+  return scan;
+}
+
+}  // namespace waretwin

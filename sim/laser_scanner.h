@@ -1,0 +1,21 @@
+// What a 2D laser scanner measures, without error.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/pose.h"
+#include "core/stamp.h"
+#include "sensors/laser_config.h"
+#include "sensors/measurements.h"
+#include "sim/ray_caster.h"
+
+namespace waretwin {
+
+// One turn that starts at `stamp`. Each beam leaves from where the laser is when the mirror points at it: X_WB gives the vehicle's pose at
+// any time. Ranges are exact, 0 where nothing lies between the scanner's limits.
+LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, const std::string& sensor, Stamp stamp,
+                     const std::function<Pose(Stamp)>& X_WB);
+
+}  // namespace waretwin

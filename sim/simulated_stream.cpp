@@ -1,0 +1,215 @@
+#include "sim/simulated_stream.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "sensors/depth_noise.h"
+#include "sensors/laser_noise.h"
+#include "sensors/odometry_model.h"
+#include "sim/laser_scanner.h"
+#include "sim/ray_caster.h"
+#include "sim/renderer.h"
+#include "sim/robot.h"
+
+namespace waretwin {
+
+namespace {
+
+constexpr const char* kOdometryName = "odometry";
+
+// Sensors measure at whole multiples of their period; one rounding each, so that rates like 15 Hz don't drift.
+Stamp stamp_of_turn(std::int64_t turn, double rate_hz) { return from_seconds(static_cast<double>(turn) / rate_hz); }
+
+// Measurements from stamp 0 to `end`, both included.
+std::int64_t turns_until(Stamp end, double rate_hz) {
+  if (end < 0) return 0;
+  auto turns = static_cast<std::int64_t>(std::floor(to_seconds(end) * rate_hz));
+  while (stamp_of_turn(turns + 1, rate_hz) <= end) ++turns;
+  while (stamp_of_turn(turns, rate_hz) > end) --turns;
+  return turns + 1;
+}
+
+enum class SensorKind { kOdometry, kLaser, kCamera };  // also the order of equal stamps
+
+struct Source {
+  SensorKind kind;
+  std::string name;
+  double rate_hz;
+  std::int64_t turns;     // in the whole drive
+  std::int64_t next = 0;  // turn to come
+
+  Stamp stamp() const { return stamp_of_turn(next, rate_hz); }
+};
+
+std::vector<Stamp> camera_stamps(const std::vector<Source>& sources) {
+  std::vector<Stamp> stamps;
+  for (const Source& source : sources) {
+    if (source.kind != SensorKind::kCamera) continue;
+    for (std::int64_t turn = 0; turn < source.turns; ++turn) stamps.push_back(stamp_of_turn(turn, source.rate_hz));
+  }
+  std::sort(stamps.begin(), stamps.end());
+  return stamps;
+}
+
+}  // namespace
+
+void SimulationConfig::visit(Fields& f) {
+  f.group("render", render, "how colour pictures are made");
+  f("colour", colour, "false: black colour pictures, for runs that use depth alone");
+  f("truth_depth", truth_depth, "depth without error, field mask and range limits");
+  f("max_frames", max_frames, "ends the drive after this many camera frames; 0 = the whole route", {.min = 0});
+  RayCasterOptions caster;
+  caster.isa = isa;
+  caster.visit(f);
+  isa = caster.isa;
+}
+
+struct SimulatedStream::State {
+  State(const Scenario& a_scenario, std::shared_ptr<const Scene> a_scene, const SimulationConfig& a_config);
+
+  Scenario scenario;
+  SimulationConfig config;
+  std::shared_ptr<const RayCaster> ray_caster;
+  RobotMotion motion;
+  Renderer renderer;
+  std::map<std::string, DepthNoiseModel> depth_noise;
+  std::map<std::string, LaserNoiseModel> laser_noise;
+  OdometryModel odometry;
+  StreamInfo info;
+  std::vector<Source> sources;
+  FrameTruth truth;
+  int frames_sent = 0, frames_rendered = 0;
+  double last_frame_ms = 0.0;
+
+  void describe();
+  Pose X_WC(const std::string& camera, Stamp stamp) const { return motion.X_WB(stamp) * info.cameras.at(camera).X_BC; }
+  LaserScan scan(const std::string& name, Stamp stamp) const;
+  void render(RgbdFrame& frame);
+};
+
+SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const Scene> a_scene, const SimulationConfig& a_config)
+    : scenario(a_scenario),
+      config(a_config),
+      ray_caster(std::make_shared<RayCaster>(std::move(a_scene), RayCasterOptions{.isa = a_config.isa})),
+      motion(a_scenario.robot),
+      renderer(ray_caster,
+               [&] {
+                 RenderOptions options = a_config.render;
+                 options.exposure *= a_scenario.lighting.exposure;
+                 return options;
+               }()),
+      odometry(a_scenario.sensors.odometry, a_scenario.seed, kOdometryName) {
+  const SensorsConfig& sensors = scenario.sensors;
+  const Stamp end = motion.duration();
+  if (sensors.odometry.enabled) {
+    sources.push_back({SensorKind::kOdometry, kOdometryName, sensors.odometry.rate_hz, turns_until(end, sensors.odometry.rate_hz)});
+  }
+  for (const auto& [name, laser] : sensors.lasers) {
+    const Stamp turn = static_cast<Stamp>(laser.beams - 1) * laser.beam_interval();
+    sources.push_back({SensorKind::kLaser, name, laser.rate_hz, turns_until(end - turn, laser.rate_hz)});
+    laser_noise.emplace(name, LaserNoiseModel(laser, scenario.seed, name));
+  }
+  for (const auto& [name, camera] : sensors.cameras) {
+    sources.push_back({SensorKind::kCamera, name, camera.rate_hz, turns_until(end, camera.rate_hz)});
+    depth_noise.emplace(name, DepthNoiseModel(camera, scenario.seed, name));
+  }
+  describe();
+}
+
+void SimulatedStream::State::describe() {
+  info.source = scenario.name;
+  for (const auto& [name, camera] : scenario.sensors.cameras) {
+    info.cameras[name] = {camera.intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
+  }
+  for (const auto& [name, laser] : scenario.sensors.lasers) info.lasers[name] = {laser.mount.X_BL(), laser.rate_hz};
+  info.has_odometry = scenario.sensors.odometry.enabled;
+  info.X_WB_start = motion.X_WB(0);
+  const std::vector<Stamp> frames = camera_stamps(sources);
+  info.frame_count = static_cast<int>(frames.size());
+  info.duration_s = to_seconds(motion.duration());
+  if (config.max_frames > 0 && config.max_frames <= static_cast<int>(frames.size())) {
+    info.frame_count = config.max_frames;
+    info.duration_s = to_seconds(frames[static_cast<std::size_t>(config.max_frames) - 1]);
+  }
+}
+
+LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) const {
+  LaserScan scan = ideal_scan(*ray_caster, scenario.sensors.lasers.at(name), name, stamp, [this](Stamp at) { return motion.X_WB(at); });
+  laser_noise.at(name).apply(scan);
+  return scan;
+}
+
+void SimulatedStream::State::render(RgbdFrame& frame) {
+  const auto begin = std::chrono::steady_clock::now();
+  const CameraConfig& camera = scenario.sensors.cameras.at(frame.sensor);
+  RenderRequest request;
+  request.colour = config.colour;
+  request.seed = scenario.seed;
+  request.sensor = frame.sensor;
+  request.stamp = frame.stamp;
+  FrameImages images = renderer.render(camera.intrinsics(), X_WC(frame.sensor, frame.stamp), request);
+  frame.colour = config.colour ? images.colour : cv::Mat(images.depth.size(), CV_8UC3, cv::Scalar::all(0));
+  if (config.truth_depth) {
+    frame.depth = depth_from_millimetres(depth_to_millimetres(images.depth));
+  } else {
+    frame.depth = images.depth.clone();
+    depth_noise.at(frame.sensor).apply(frame.depth, frame.stamp);
+  }
+  if (truth.stamp == frame.stamp && truth.sensor == frame.sensor) {
+    truth.instances = images.instances;
+    truth.ideal_depth = images.depth;
+  }
+  ++frames_rendered;
+  last_frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+SimulatedStream::SimulatedStream(const Scenario& scenario, std::shared_ptr<const Scene> scene, const SimulationConfig& config)
+    : state_(std::make_shared<State>(scenario, std::move(scene), config)) {}
+
+SimulatedStream::~SimulatedStream() = default;
+
+const StreamInfo& SimulatedStream::info() const { return state_->info; }
+
+std::optional<SensorEvent> SimulatedStream::next() {
+  State& s = *state_;
+  if (s.config.max_frames > 0 && s.frames_sent >= s.config.max_frames) return std::nullopt;
+  Source* first = nullptr;
+  for (Source& source : s.sources) {
+    if (source.next >= source.turns) continue;
+    const auto key = [](const Source& a) { return std::tuple(a.stamp(), static_cast<int>(a.kind), std::string_view(a.name)); };
+    if (first == nullptr || key(source) < key(*first)) first = &source;
+  }
+  if (first == nullptr) return std::nullopt;
+  const Stamp stamp = first->stamp();
+  ++first->next;
+  if (first->kind == SensorKind::kOdometry) return s.odometry.advance(stamp, s.motion.X_WB(stamp));
+  if (first->kind == SensorKind::kLaser) return s.scan(first->name, stamp);
+  ++s.frames_sent;
+  s.truth = {};
+  s.truth.stamp = stamp;
+  s.truth.sensor = first->name;
+  s.truth.X_WB = s.motion.X_WB(stamp);
+  s.truth.X_WC = s.X_WC(first->name, stamp);
+  RgbdFrame frame;
+  frame.stamp = stamp;
+  frame.sensor = first->name;
+  frame.load = [state = state_](RgbdFrame& to_load) { state->render(to_load); };
+  return frame;
+}
+
+Pose SimulatedStream::true_X_WB(Stamp stamp) const { return state_->motion.X_WB(stamp); }
+const FrameTruth& SimulatedStream::last_frame_truth() const { return state_->truth; }
+const Scene& SimulatedStream::scene() const { return state_->ray_caster->scene(); }
+std::shared_ptr<const RayCaster> SimulatedStream::ray_caster() const { return state_->ray_caster; }
+int SimulatedStream::frames_rendered() const { return state_->frames_rendered; }
+double SimulatedStream::last_frame_ms() const { return state_->last_frame_ms; }
+double SimulatedStream::duration_s() const { return to_seconds(state_->motion.duration()); }
+double SimulatedStream::distance_driven_m() const { return state_->motion.distance_m(); }
+
+}  // namespace waretwin
