@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/pose.h"
-#include "harness/version.h"
+#include "core/version.h"
 
 namespace waretwin {
 
