@@ -121,7 +121,7 @@ class Meshing {
     for (std::size_t b = 0; b < volume.size(); ++b) position_of_[&volume.block(b)] = b;
   }
 
-  Mesh run() {
+  SurfaceMesh run() {
     std::vector<std::vector<Cube>> cubes(order_.size());
     std::vector<CrossedEdges> edges(order_.size());
     // A cube's upper edges belong to the neighbours' voxels, so that vertices are counted once all cubes are known.
@@ -135,7 +135,7 @@ class Meshing {
       for (const Cube& cube : cubes[i]) triangles += marching_cubes_table()[cube.inside].size();
       first_triangle[i + 1] = first_triangle[i] + static_cast<std::uint32_t>(triangles);
     }
-    Mesh mesh;
+    SurfaceMesh mesh;
     mesh.vertices.resize(first_vertex.back());
     mesh.normals.resize(first_vertex.back());
     mesh.colours.resize(first_vertex.back());
@@ -220,7 +220,7 @@ class Meshing {
     }
   }
 
-  void place_vertices(const TsdfBlock& block, const CrossedEdges& edges, std::uint32_t first, Mesh& mesh) const {
+  void place_vertices(const TsdfBlock& block, const CrossedEdges& edges, std::uint32_t first, SurfaceMesh& mesh) const {
     const Neighbourhood near(volume_, block);
     const auto voxel_m = static_cast<float>(volume_.voxel_m());
     std::size_t at = first;
@@ -264,24 +264,24 @@ class Meshing {
 
 }  // namespace
 
-Mesh extract_mesh(const TsdfVolume& volume) { return Meshing(volume).run(); }
+SurfaceMesh extract_mesh(const TsdfVolume& volume) { return Meshing(volume).run(); }
 
-std::int32_t triangle_label(const Mesh& mesh, std::size_t triangle) {
+std::int32_t triangle_label(const SurfaceMesh& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
   const std::int32_t a = mesh.labels[t[0]], b = mesh.labels[t[1]], c = mesh.labels[t[2]];
   if (a == b || a == c) return a;
   return b == c ? b : std::min({a, b, c});
 }
 
-std::vector<std::pair<std::int32_t, Mesh>> split_by_label(const Mesh& mesh) {
+std::vector<std::pair<std::int32_t, SurfaceMesh>> split_by_label(const SurfaceMesh& mesh) {
   std::vector<std::int32_t> label_of(mesh.triangles.size());
   std::set<std::int32_t> labels;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     label_of[i] = triangle_label(mesh, i);
     labels.insert(label_of[i]);
   }
-  std::vector<std::pair<std::int32_t, Mesh>> parts;
-  for (const std::int32_t label : labels) parts.emplace_back(label, Mesh());
+  std::vector<std::pair<std::int32_t, SurfaceMesh>> parts;
+  for (const std::int32_t label : labels) parts.emplace_back(label, SurfaceMesh());
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   // A vertex on the border of two parts goes into both; `newest` holds its number in the part that used it last.
   std::vector<std::pair<std::int32_t, std::uint32_t>> newest(mesh.vertices.size(), {0, kUnused});
@@ -305,7 +305,7 @@ std::vector<std::pair<std::int32_t, Mesh>> split_by_label(const Mesh& mesh) {
   return parts;
 }
 
-Mesh object_mesh(const Mesh& mesh, std::int32_t label) {
+SurfaceMesh object_mesh(const SurfaceMesh& mesh, std::int32_t label) {
   for (auto& [part_label, part] : split_by_label(mesh)) {
     if (part_label == label) return std::move(part);
   }

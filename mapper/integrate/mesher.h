@@ -13,7 +13,7 @@
 
 namespace waretwin {
 
-struct Mesh {
+struct SurfaceMesh {
   std::vector<Eigen::Vector3f> vertices;                // metres, frame of the volume (W)
   std::vector<Eigen::Vector3f> normals;                 // unit length, towards free space
   std::vector<std::array<std::uint8_t, 3>> colours;     // red, green, blue
@@ -24,16 +24,16 @@ struct Mesh {
 // The whole mesh; vertices are shared. Cubes of eight voxels make triangles where all eight have a surface near (has_surface) and the
 // distances along no crossed edge differ by more than the truncation distance: larger steps are where two views met, not surfaces.
 // Ordered by blocks: the same at any number of threads.
-Mesh extract_mesh(const TsdfVolume& volume);
+SurfaceMesh extract_mesh(const TsdfVolume& volume);
 
 // The label of a triangle: the one that most of its vertices carry, the smallest where all three differ. So every triangle belongs to
 // exactly one object or to the background (0).
-std::int32_t triangle_label(const Mesh& mesh, std::size_t triangle);
+std::int32_t triangle_label(const SurfaceMesh& mesh, std::size_t triangle);
 
 // The triangles of one label, with the vertices that they use.
-Mesh object_mesh(const Mesh& mesh, std::int32_t label);
+SurfaceMesh object_mesh(const SurfaceMesh& mesh, std::int32_t label);
 
 // The same for every label that occurs, in ascending order.
-std::vector<std::pair<std::int32_t, Mesh>> split_by_label(const Mesh& mesh);
+std::vector<std::pair<std::int32_t, SurfaceMesh>> split_by_label(const SurfaceMesh& mesh);
 
 }  // namespace waretwin

@@ -37,7 +37,7 @@ TsdfVolume sampled(const TsdfConfig& config, int half, Distance&& distance, Labe
 using Edges = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
 
 // Directed edges with how often each occurs.
-Edges directed_edges(const Mesh& mesh) {
+Edges directed_edges(const SurfaceMesh& mesh) {
   Edges edges;
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
@@ -45,7 +45,7 @@ Edges directed_edges(const Mesh& mesh) {
   return edges;
 }
 
-void expect_closed(const Mesh& mesh) {
+void expect_closed(const SurfaceMesh& mesh) {
   const Edges edges = directed_edges(mesh);
   for (const auto& [edge, count] : edges) {
     ASSERT_EQ(count, 1);
@@ -54,7 +54,7 @@ void expect_closed(const Mesh& mesh) {
   }
 }
 
-double area(const Mesh& mesh) {
+double area(const SurfaceMesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>(),
@@ -64,7 +64,7 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-double enclosed_volume(const Mesh& mesh) {
+double enclosed_volume(const SurfaceMesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>(), b = mesh.vertices[t[1]].cast<double>(),
@@ -97,7 +97,7 @@ TEST(Mesher, SphereIsClosedWithTheRightAreaAndVolume) {
   const Eigen::Vector3d centre(0.013, -0.007, 0.021);
   const TsdfVolume volume = sampled(
       config, 20, [&](const Eigen::Vector3d& p) { return (p - centre).norm() - r; }, [](const Eigen::Vector3d&) { return 4; });
-  const Mesh mesh = extract_mesh(volume);
+  const SurfaceMesh mesh = extract_mesh(volume);
   expect_closed(mesh);
   EXPECT_EQ(
       static_cast<int>(mesh.vertices.size()) - static_cast<int>(directed_edges(mesh).size()) / 2 + static_cast<int>(mesh.triangles.size()),
@@ -123,7 +123,7 @@ TEST(Mesher, NoiseIsClosedToo) {
   const TsdfVolume volume = sampled(
       config, 12, [&](const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() > 0.2 ? 0.02 : uniform(random); },
       [](const Eigen::Vector3d&) { return 0; });
-  const Mesh mesh = extract_mesh(volume);
+  const SurfaceMesh mesh = extract_mesh(volume);
   EXPECT_GT(mesh.triangles.size(), 10000u);
   expect_closed(mesh);
 }
@@ -135,7 +135,7 @@ TEST(Mesher, PartsOfAMeshAddUpToTheWhole) {
       [](const Eigen::Vector3d& p) { return p.x() < 0.0   ? 7
                                             : p.y() < 0.0 ? 0
                                                           : 2; });
-  const Mesh mesh = extract_mesh(volume);
+  const SurfaceMesh mesh = extract_mesh(volume);
   const auto parts = split_by_label(mesh);
   ASSERT_EQ(parts.size(), 3u);
   EXPECT_EQ(parts[0].first, 0);
@@ -186,7 +186,7 @@ TEST(Mesher, SameBytesAtAnyThreadCount) {
   std::vector<std::string> digests;
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);
-    const Mesh mesh = extract_mesh(volume);
+    const SurfaceMesh mesh = extract_mesh(volume);
     Digest digest;
     digest.add_bytes(mesh.vertices.data(), mesh.vertices.size() * sizeof mesh.vertices[0]);
     digest.add_bytes(mesh.normals.data(), mesh.normals.size() * sizeof mesh.normals[0]);
@@ -212,7 +212,7 @@ TEST(Mesher, VerticesLieOnTheTrueSurfaces) {
     const test::LabelledFrame in = test::view(scene, camera, X_WC, true, i);
     integrator.integrate(in.frame, camera, in.labels, X_WC, volume);
   }
-  const Mesh mesh = extract_mesh(volume);
+  const SurfaceMesh mesh = extract_mesh(volume);
   std::vector<double> errors;
   for (const Eigen::Vector3f& p : mesh.vertices) errors.push_back(scene.distance(p.cast<double>()));
   ASSERT_GT(errors.size(), 20000u);
