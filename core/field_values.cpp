@@ -137,6 +137,10 @@ void assign_field(FieldRef field, const YamlNode& node, const FieldRule& rule, c
             values.push_back(*value);
           }
           *target = std::move(values);
+        } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+          const auto value = parse_value<double>(node, rule);
+          if (!value && node.kind != YamlNode::Kind::null) refuse(describe_node(node));
+          *target = value;
         } else {
           const auto value = parse_value<T>(node, rule);
           if (!value) refuse(describe_node(node));
@@ -157,6 +161,8 @@ std::string expected_value(FieldRef field, const FieldRule& rule) {
           return rule.choices.empty() ? "text" : choices_text(rule);
         } else if constexpr (std::is_same_v<T, double>) {
           return "a number" + range_text(rule);
+        } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+          return "a number" + range_text(rule) + " or null";
         } else if constexpr (is_number_v<T>) {
           FieldRule bounded = rule;
           if (std::is_unsigned_v<T> && bounded.min < 0) bounded.min = 0;
@@ -181,6 +187,8 @@ std::string field_as_yaml(FieldRef field) {
           return text_as_yaml(*source);
         } else if constexpr (std::is_same_v<T, double>) {
           return number_text(*source);
+        } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+          return *source ? number_text(**source) : "null";
         } else if constexpr (is_number_v<T>) {
           return std::to_string(*source);
         } else {

@@ -18,6 +18,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -33,8 +34,9 @@ struct FieldRule {
   bool required = false;                  // the file must name it
 };
 
-using FieldRef =
-    std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::string*, std::vector<double>*, std::vector<std::string>*>;
+// An optional number has no value while the file does not name it, or names it null.
+using FieldRef = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
+                              std::vector<double>*, std::vector<std::string>*>;
 
 class Fields {
  public:

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct ModelPlacement {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double yaw_deg = 0.0;
   double scale = 1.0;
-  std::string class_name;  // makes the whole model one object of this class; empty: the file's extras and `truth` rules decide
+  std::filesystem::path folder;  // of the scenario: when set, visit() checks that the file exists and stays inside it; not a key
+  std::string class_name;  // key `class`: makes the whole model one object of this class; empty: the file's extras and `truth` rules decide
   void visit(Fields& f);
 };
 
@@ -56,8 +58,8 @@ struct LightingConfig {
 // A place on the route. The robot turns towards it, drives there in a straight line, turns to `heading_deg` if given, and waits.
 struct Waypoint {
   double x_m = 0.0, y_m = 0.0;
-  bool has_heading = false;  // set when the file names heading_deg
-  double heading_deg = 0.0;  // world yaw of the vehicle's x axis after arrival; the first waypoint's is the start heading
+  // World yaw of the vehicle's x axis after arrival; the first waypoint's is the start heading. None: as it arrived.
+  std::optional<double> heading_deg;
   double wait_s = 0.0;
   bool reverse = false;  // drives backwards to this waypoint
   void visit(Fields& f);

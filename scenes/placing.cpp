@@ -1,0 +1,66 @@
+#include "scenes/placing.h"
+
+#include "scenes/true_cuboids.h"
+
+namespace waretwin {
+
+namespace {
+
+void shift(TextureUse& use, int offset) {
+  if (use.texture >= 0) use.texture += offset;
+}
+
+}  // namespace
+
+SceneBuilder::Offsets SceneBuilder::share(const Model& model) {
+  const std::string key = model.file.lexically_normal().string();
+  const auto known = shared_.find(key);
+  if (known != shared_.end()) return known->second;
+  const Offsets offsets{static_cast<int>(scene_.textures.size()), static_cast<int>(scene_.materials.size()),
+                        static_cast<int>(scene_.meshes.size())};
+  const Scene& content = model.content;
+  scene_.textures.insert(scene_.textures.end(), content.textures.begin(), content.textures.end());
+  for (Material material : content.materials) {
+    for (TextureUse* use :
+         {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture, &material.emissive_texture}) {
+      shift(*use, offsets.texture);
+    }
+    scene_.materials.push_back(std::move(material));
+  }
+  for (const Mesh& mesh : content.meshes) {
+    scene_.meshes.push_back(mesh);
+    scene_.meshes.back().material += offsets.material;
+  }
+  for (const std::string& note : content.notes) scene_.notes.push_back(model.file.filename().string() + ": " + note);
+  shared_[key] = offsets;
+  return offsets;
+}
+
+void SceneBuilder::place(const Model& model, const Placing& placing) {
+  const Offsets offsets = share(model);
+  const ModelObjects objects = find_objects(model, rules_, placing.class_name, placing.name, matched_);
+  const int first = static_cast<int>(scene_.objects.size());
+  for (std::size_t i = 0; i < objects.objects.size(); ++i) {
+    TrueObject object;
+    object.id = first + static_cast<int>(i) + 1;
+    object.name = objects.objects[i].name;
+    object.class_name = objects.objects[i].class_name;
+    object.cuboid = true_cuboid(model, objects, static_cast<int>(i), placing.X_WP);
+    scene_.objects.push_back(std::move(object));
+  }
+  for (std::size_t i = 0; i < model.content.instances.size(); ++i) {
+    const std::size_t node = static_cast<std::size_t>(model.instance_nodes[i]);
+    Instance instance = model.content.instances[i];
+    instance.mesh += offsets.mesh;
+    instance.X_WM = (placing.X_WP * model.nodes[node].X_PN).cast<float>();
+    instance.object = objects.of_node[node] < 0 ? -1 : first + objects.of_node[node];
+    scene_.instances.push_back(std::move(instance));
+  }
+  for (Light light : model.content.lights) {
+    light.position = (placing.X_WP * light.position.cast<double>()).cast<float>();
+    light.direction = (placing.X_WP.linear() * light.direction.cast<double>()).normalized().cast<float>();
+    scene_.lights.push_back(std::move(light));
+  }
+}
+
+}  // namespace waretwin
