@@ -64,8 +64,8 @@ RobotMotion::RobotMotion(const RobotConfig& config) {
   const auto& route = config.route;
   x_ = route[0].x_m;
   y_ = route[0].y_m;
-  if (route[0].has_heading) {
-    yaw_ = wrap_angle(to_radians(route[0].heading_deg));
+  if (route[0].heading_deg) {
+    yaw_ = wrap_angle(to_radians(*route[0].heading_deg));
   } else if (route.size() > 1) {
     yaw_ = heading_towards(route[0], route[1]);
   }
@@ -78,7 +78,7 @@ RobotMotion::RobotMotion(const RobotConfig& config) {
       x_ = to.x_m;
       y_ = to.y_m;
     }
-    if (to.has_heading) turn_to(wrap_angle(to_radians(to.heading_deg)));
+    if (to.heading_deg) turn_to(wrap_angle(to_radians(*to.heading_deg)));
     arrivals_.push_back(from_seconds(end_s_));
     if (to.wait_s > 0.0) add(0.0, 0.0, to.wait_s, 1.0, 1.0);
   }
