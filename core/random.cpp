@@ -43,21 +43,19 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view sensor, std::str
   key_[1] = static_cast<std::uint32_t>(key >> 32);
 }
 
-std::array<std::uint32_t, 4> RandomStream::words(std::uint64_t index, std::uint32_t draw) const {
-  r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), draw, 0}};
-  r123::Philox4x32::key_type key = {{key_[0], key_[1]}};
-  const r123::Philox4x32::ctr_type out = r123::Philox4x32()(counter, key);
+std::array<std::uint32_t, 4> philox_words(const std::array<std::uint32_t, 4>& counter, const std::array<std::uint32_t, 2>& key) {
+  const r123::Philox4x32::ctr_type in = {{counter[0], counter[1], counter[2], counter[3]}};
+  const r123::Philox4x32::key_type with = {{key[0], key[1]}};
+  const r123::Philox4x32::ctr_type out = r123::Philox4x32()(in, with);
   return {out[0], out[1], out[2], out[3]};
 }
 
+std::array<std::uint32_t, 4> RandomStream::words(std::uint64_t index, std::uint32_t draw) const {
+  return philox_words({static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), draw, 0}, key_);
+}
+
 void RandomStream::fill(std::uint64_t first, std::size_t count, std::array<std::uint32_t, 4>* out) const {
-  const r123::Philox4x32::key_type key = {{key_[0], key_[1]}};
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t index = first + i;
-    const r123::Philox4x32::ctr_type counter = {{static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), 0, 0}};
-    const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
-    out[i] = {words[0], words[1], words[2], words[3]};
-  }
+  for (std::size_t i = 0; i < count; ++i) out[i] = words(first + i);
 }
 
 double RandomStream::uniform(std::uint64_t index, std::uint32_t draw) const {

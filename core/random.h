@@ -32,8 +32,11 @@ class RandomStream {
   std::array<float, 2> normal_pair(std::uint64_t index, std::uint32_t draw = 0) const;
 
  private:
-  std::uint32_t key_[2];
+  std::array<std::uint32_t, 2> key_;
 };
+
+// The generator itself: ten rounds of Philox 4x32.
+std::array<std::uint32_t, 4> philox_words(const std::array<std::uint32_t, 4>& counter, const std::array<std::uint32_t, 2>& key);
 
 // 64-bit hash of text (FNV-1a with a final mix); stable across machines and versions, keys of random streams rely on it.
 std::uint64_t hash_text(std::string_view text);

@@ -6,6 +6,13 @@
 
 namespace waretwin {
 
+namespace {
+
+// Readings come in whole nanometres and nanoradians, so that nine decimals of text hold them exactly.
+double stepped(double value) { return std::round(value * 1e9) / 1e9; }
+
+}  // namespace
+
 OdometryModel::OdometryModel(const OdometryConfig& odometry, std::uint64_t seed, const std::string& sensor)
     : noise_(odometry.noise), seed_(seed), sensor_(sensor) {
   if (!noise_.enabled) return;
@@ -38,7 +45,7 @@ OdometryReading OdometryModel::advance(Stamp stamp, const Pose& X_WB) {
   OdometryReading reading;
   reading.stamp = stamp;
   reading.sensor = sensor_;
-  reading.X_OB = make_upright_pose(x_, y_, 0.0, yaw_);
+  reading.X_OB = make_upright_pose(stepped(x_), stepped(y_), 0.0, stepped(yaw_));
   return reading;
 }
 

@@ -37,7 +37,7 @@ TEST(Odometry, WithoutNoiseItFollowsAnyWay) {
     const Pose X_SB = make_upright_pose(std::sin(t), 1 - std::cos(0.7 * t), 0, t);
     const OdometryReading reading = model.advance(i * kStep, X_WS * X_SB);
     EXPECT_EQ(reading.stamp, i * kStep);
-    ASSERT_LT((reading.X_OB.matrix() - X_SB.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+    ASSERT_LT((reading.X_OB.matrix() - X_SB.matrix()).cwiseAbs().maxCoeff(), 2e-9);
   }
 }
 
@@ -95,8 +95,8 @@ TEST(Odometry, ScaleErrorsStayForARunAndVaryBetweenRuns) {
     turn_scales.push_back((model.turn_scale() - 1.0) / config.noise.turn_scale_sd);
     if (seed > 20) continue;
     const Pose end = drive(model, 3.0, 1.0, 30).X_OB;
-    EXPECT_NEAR(end.translation().x(), 3.0 * model.distance_scale(), 1e-9);
-    EXPECT_NEAR(yaw_of(end), model.turn_scale(), 1e-9);
+    EXPECT_NEAR(end.translation().x(), 3.0 * model.distance_scale(), 2e-9);
+    EXPECT_NEAR(yaw_of(end), model.turn_scale(), 2e-9);
   }
   EXPECT_LT(test::ks_distance(distance_scales, test::normal_cdf), 1.63 / std::sqrt(kRuns));
   EXPECT_LT(test::ks_distance(turn_scales, test::normal_cdf), 1.63 / std::sqrt(kRuns));

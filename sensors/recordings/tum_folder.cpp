@@ -1,0 +1,135 @@
+// The layout of the TUM RGB-D benchmark.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "sensors/recordings/contents.h"
+#include "sensors/recordings/text_formats.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct StampedFile {
+  Stamp stamp = 0;
+  fs::path file;
+};
+
+struct StampedPose {
+  Stamp stamp = 0;
+  Pose X_WC = Pose::Identity();
+};
+
+template <class T>
+void sort_by_stamp(std::vector<T>& values) {
+  std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
+}
+
+std::vector<StampedFile> read_file_list(const fs::path& list) {
+  std::vector<StampedFile> files;
+  for (const TextLine& line : read_text_lines(list)) {
+    if (line.words.size() != 2) {
+      throw Error(list, line.line, "has " + std::to_string(line.words.size()) + " words; expected 'seconds file'");
+    }
+    const fs::path name = line.words[1];
+    const fs::path plain = name.lexically_normal();
+    if (name.is_absolute() || (!plain.empty() && *plain.begin() == "..")) {
+      throw Error(list, line.line, "'" + line.words[1] + "' leaves the folder; expected a file inside it");
+    }
+    const fs::path file = list.parent_path() / name;
+    if (!fs::exists(file)) throw Error(list, line.line, "'" + line.words[1] + "' does not exist");
+    files.push_back({parse_text_stamp(list, line.line, line.words[0]), file});
+  }
+  sort_by_stamp(files);
+  return files;
+}
+
+std::vector<StampedPose> read_trajectory(const fs::path& file) {
+  std::vector<StampedPose> poses;
+  for (const TextLine& line : read_text_lines(file)) {
+    if (line.words.size() != 8) {
+      throw Error(file, line.line, "has " + std::to_string(line.words.size()) + " numbers; expected 'seconds x y z qx qy qz qw'");
+    }
+    double n[8];
+    for (std::size_t i = 1; i < 8; ++i) n[i] = parse_text_number(file, line.line, line.words[i]);
+    const Eigen::Vector3d position(n[1], n[2], n[3]);
+    const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
+    if (!position.allFinite() || !(std::abs(rotation.norm() - 1.0) < 0.01)) {
+      throw Error(file, line.line, "is not a pose; expected finite numbers and a quaternion of length 1");
+    }
+    StampedPose pose;
+    pose.stamp = parse_text_stamp(file, line.line, line.words[0]);
+    pose.X_WC.translation() = position;
+    pose.X_WC.linear() = rotation.normalized().toRotationMatrix();
+    poses.push_back(pose);
+  }
+  sort_by_stamp(poses);
+  return poses;
+}
+
+// Index of the nearest stamp; `sorted` is not empty.
+template <class T>
+std::size_t nearest(const std::vector<T>& sorted, Stamp stamp) {
+  const auto after = std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const T& value, Stamp s) { return value.stamp < s; });
+  if (after == sorted.begin()) return 0;
+  const auto before = after - 1;
+  if (after == sorted.end() || stamp - before->stamp <= after->stamp - stamp) return static_cast<std::size_t>(before - sorted.begin());
+  return static_cast<std::size_t>(after - sorted.begin());
+}
+
+// Between two poses that are both near the stamp, the way between them; near the end of a trajectory the last pose.
+std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Stamp stamp, Stamp tolerance) {
+  if (poses.empty()) return std::nullopt;
+  const StampedPose& near = poses[nearest(poses, stamp)];
+  if (std::abs(near.stamp - stamp) > tolerance) return std::nullopt;
+  const auto after = std::lower_bound(poses.begin(), poses.end(), stamp, [](const StampedPose& p, Stamp s) { return p.stamp < s; });
+  if (after == poses.end() || after == poses.begin() || after->stamp == stamp) return near.X_WC;
+  const StampedPose& before = *(after - 1);
+  if (after->stamp - stamp > tolerance || stamp - before.stamp > tolerance) return near.X_WC;
+  return interpolate(before.X_WC, after->X_WC,
+                     static_cast<double>(stamp - before.stamp) / static_cast<double>(after->stamp - before.stamp));
+}
+
+std::vector<double> read_calibration(const fs::path& file) {
+  std::vector<double> numbers;
+  for (const TextLine& line : read_text_lines(file)) {
+    for (const std::string& word : line.words) numbers.push_back(parse_text_number(file, line.line, word));
+  }
+  if (numbers.size() < 4) throw Error(file, "holds " + std::to_string(numbers.size()) + " numbers; expected 'fx fy cx cy'");
+  numbers.resize(4);
+  return numbers;
+}
+
+}  // namespace
+
+bool is_tum_folder(const fs::path& folder) { return fs::exists(folder / "rgb.txt") || fs::exists(folder / "depth.txt"); }
+
+RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig& config) {
+  RecordingContents contents;
+  contents.depth_scale = 5000.0;
+  if (fs::exists(folder / "calibration.txt")) {
+    contents.intrinsics = read_calibration(folder / "calibration.txt");
+  } else {
+    contents.intrinsics = {517.3, 516.5, 318.6, 255.3};  // Freiburg 1, from the benchmark's page on its file formats
+  }
+  const std::vector<StampedFile> colours = read_file_list(folder / "rgb.txt");
+  const std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
+  std::vector<StampedPose> poses;
+  if (fs::exists(folder / "groundtruth.txt")) poses = read_trajectory(folder / "groundtruth.txt");
+  const Stamp tolerance = from_seconds(config.association_s);
+  for (std::size_t i = 0; i < colours.size() && !depths.empty(); ++i) {
+    const StampedFile& depth = depths[nearest(depths, colours[i].stamp)];
+    if (std::abs(depth.stamp - colours[i].stamp) > tolerance || nearest(colours, depth.stamp) != i) continue;
+    contents.frames.push_back({colours[i].stamp, colours[i].file, depth.file, pose_at(poses, colours[i].stamp, tolerance)});
+  }
+  if (contents.frames.empty()) {
+    throw Error(folder, "has no colour picture with a depth image within " + std::to_string(config.association_s) + " s (" +
+                            std::to_string(colours.size()) + " in rgb.txt, " + std::to_string(depths.size()) + " in depth.txt)");
+  }
+  return contents;
+}
+
+}  // namespace waretwin

@@ -1,0 +1,392 @@
+#include "sensors/recordings/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/config.h"
+#include "core/files.h"
+#include "sensors/odometry_model.h"
+#include "sensors/recordings/text_formats.h"
+#include "tests/support/expect_error.h"
+#include "tests/support/test_data.h"
+
+namespace waretwin {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string encoded(const std::string& extension, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(extension, image, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+cv::Mat colour_image(int shade) { return {6, 8, CV_8UC3, cv::Scalar(shade, 2 * shade, 3 * shade)}; }
+
+cv::Mat depth_image(int units) {
+  cv::Mat image(6, 8, CV_16UC1, cv::Scalar(units));
+  image.at<std::uint16_t>(0, 0) = 0;
+  image.at<std::uint16_t>(0, 1) = 65535;
+  return image;
+}
+
+std::string matrix_text(const Pose& pose) {
+  std::ostringstream out;
+  out.precision(17);
+  out << pose.matrix() << "\n";
+  return out.str();
+}
+
+// Two frames, 0 and 3, in the 7-Scenes layout.
+class FrameFolder : public ::testing::Test {
+ protected:
+  FrameFolder() {
+    write("camera-intrinsics.txt", "500 0 3.5\n0 510 2.5\n0 0 1\n");
+    for (const int number : {0, 3}) {
+      const std::string stem = "frame-00000" + std::to_string(number);
+      write(stem + ".color.png", encoded(".png", colour_image(10 + number)));
+      write(stem + ".depth.png", encoded(".png", depth_image(1234 + number)));
+      Pose pose = make_upright_pose(number, 1, 2, 0.5);
+      pose.linear() = pose.linear() * optical_from_forward();
+      write(stem + ".pose.txt", matrix_text(pose));
+    }
+  }
+
+  void write(const std::string& name, const std::string& bytes) { write_file(folder_.path() / name, bytes); }
+  fs::path path() const { return folder_.path(); }
+
+  test::TemporaryFolder folder_;
+};
+
+std::vector<RgbdFrame> all_frames(SensorStream& stream) {
+  std::vector<RgbdFrame> frames;
+  while (auto event = stream.next()) {
+    if (auto* frame = std::get_if<RgbdFrame>(&*event)) {
+      load_pictures(*frame);
+      frames.push_back(*frame);
+    }
+  }
+  return frames;
+}
+
+TEST_F(FrameFolder, YieldsFramesInOrderWithPosesAndStamps) {
+  const auto recording = open_recording(path());
+  const StreamInfo& info = recording->info();
+  EXPECT_EQ(info.frame_count, 2);
+  EXPECT_TRUE(info.has_recorded_poses);
+  EXPECT_FALSE(info.has_odometry);
+  const StreamInfo::Camera& camera = info.cameras.at("camera");
+  EXPECT_EQ(camera.intrinsics.width, 8);
+  EXPECT_EQ(camera.intrinsics.height, 6);
+  EXPECT_EQ(camera.intrinsics.fx, 500);
+  EXPECT_EQ(camera.intrinsics.fy, 510);
+  EXPECT_EQ(camera.intrinsics.cx, 3.5);
+  EXPECT_EQ(camera.intrinsics.cy, 2.5);
+  EXPECT_EQ(camera.rate_hz, 30.0);
+  EXPECT_EQ(info.up_W, Eigen::Vector3d::UnitZ());
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0].stamp, 0);
+  EXPECT_EQ(frames[1].stamp, 100'000'000);
+  EXPECT_EQ(frames[1].colour.at<cv::Vec3b>(2, 2), cv::Vec3b(13, 26, 39));
+  EXPECT_EQ(frames[1].depth.at<float>(2, 2), 1237 * 0.001f);
+  EXPECT_EQ(frames[1].depth.at<float>(0, 0), 0.0f);
+  EXPECT_EQ(frames[1].depth.at<float>(0, 1), 0.0f);
+  ASSERT_TRUE(frames[1].recorded_X_WC);
+  EXPECT_NEAR(frames[1].recorded_X_WC->translation().x(), 3.0, 1e-12);
+  EXPECT_LT((info.X_WB_start.matrix() - frames[0].recorded_X_WC->matrix()).norm(), 1e-12);
+}
+
+TEST_F(FrameFolder, ConfigurationOverrides) {
+  RecordingConfig config;
+  config.up = {0, -2, 0};
+  config.frame_rate_hz = 10;
+  config.depth_scale = 2000;
+  config.intrinsics = {100, 101, 4, 3};
+  config.depth_max_m = 9;
+  const auto recording = open_recording(path(), config);
+  EXPECT_EQ(recording->info().up_W, Eigen::Vector3d(0, -1, 0));
+  EXPECT_EQ(recording->info().cameras.at("camera").intrinsics.fy, 101);
+  EXPECT_EQ(recording->info().cameras.at("camera").depth_max_m, 9);
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  EXPECT_EQ(frames[1].stamp, 300'000'000);
+  EXPECT_EQ(frames[0].depth.at<float>(2, 2), 617 * 0.001f);
+}
+
+TEST_F(FrameFolder, LostCamerasAreLeftOutAndCounted) {
+  write("frame-000003.pose.txt", "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n0 0 0 1\n");
+  const auto recording = open_recording(path());
+  EXPECT_EQ(recording->lost_frames(), 1);
+  EXPECT_EQ(all_frames(*recording).size(), 1u);
+  write("frame-000000.pose.txt", "nan nan nan nan nan nan nan nan nan nan nan nan 0 0 0 1");
+  EXPECT_ERROR(open_recording(path()), "no frame with a pose", "2 are lost");
+}
+
+TEST_F(FrameFolder, WithoutAnyPosesItStillPlays) {
+  fs::remove(path() / "frame-000000.pose.txt");
+  EXPECT_ERROR(open_recording(path()), "frame-000000.pose.txt", "for each frame or for none");
+  fs::remove(path() / "frame-000003.pose.txt");
+  const auto recording = open_recording(path());
+  EXPECT_FALSE(recording->info().has_recorded_poses);
+  EXPECT_EQ(recording->info().up_W, Eigen::Vector3d(0, -1, 0));
+  EXPECT_FALSE(all_frames(*recording).front().recorded_X_WC);
+}
+
+TEST_F(FrameFolder, DamageIsNamed) {
+  write("frame-000003.pose.txt", "2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_ERROR(open_recording(path()), "frame-000003.pose.txt", "not a rigid motion");
+  write("frame-000003.pose.txt", "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_ERROR(open_recording(path()), "not a rigid motion");
+  write("frame-000003.pose.txt", "1 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "holds 3 numbers", "4 x 4");
+  write("frame-000003.pose.txt", "1 0 0 0\n0 1 zero 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_ERROR(open_recording(path()), "frame-000003.pose.txt:2:", "'zero' is not a number");
+  write("frame-000003.pose.txt", matrix_text(Pose::Identity()));
+  for (const char* bad : {"500 0 3\n0 -510 2\n0 0 1", "500 0 3\n0 510 2\n0 0 2", "nan 0 3\n0 510 2\n0 0 1"}) {
+    write("camera-intrinsics.txt", bad);
+    EXPECT_ERROR(open_recording(path()), "camera-intrinsics.txt", "not a camera matrix");
+  }
+  fs::remove(path() / "camera-intrinsics.txt");
+  EXPECT_ERROR(open_recording(path()), "camera-intrinsics.txt", "no such file");
+  write("camera-intrinsics.txt", "500 0 3.5\n0 510 2.5\n0 0 1\n");
+  fs::remove(path() / "frame-000003.depth.png");
+  EXPECT_ERROR(open_recording(path()), "frame-000003.depth.png", "no such file");
+}
+
+TEST_F(FrameFolder, DamagedPicturesAreNamedWhenLoaded) {
+  const std::string whole = encoded(".png", depth_image(1000));
+  const auto load_second = [&] { all_frames(*open_recording(path())); };
+  write("frame-000003.depth.png", "");
+  EXPECT_ERROR(load_second(), "frame-000003.depth.png", "is not a picture that can be decoded");
+  write("frame-000003.depth.png", "not a picture");
+  EXPECT_ERROR(load_second(), "frame-000003.depth.png", "is not a picture that can be decoded");
+  write("frame-000003.depth.png", encoded(".png", colour_image(3)));
+  EXPECT_ERROR(load_second(), "frame-000003.depth.png", "8 bits and 3 channels");
+  write("frame-000003.depth.png", encoded(".png", cv::Mat(5, 8, CV_16UC1, cv::Scalar(3))));
+  EXPECT_ERROR(load_second(), "frame-000003.depth.png", "8 x 5 pixels; expected 8 x 6");
+}
+
+TEST(RecordingLayout, UnknownFoldersNameWhatWasLookedFor) {
+  const test::TemporaryFolder folder;
+  EXPECT_ERROR(open_recording(folder.path()), "rgb.txt and depth.txt", "camera-intrinsics.txt", "laser.txt");
+  EXPECT_ERROR(open_recording(folder.path() / "none"), "no such folder");
+  write_file(folder.path() / "file", "x");
+  EXPECT_ERROR(open_recording(folder.path() / "file"), "not a folder");
+}
+
+class TumFolder : public ::testing::Test {
+ protected:
+  TumFolder() {
+    make_folder(path() / "rgb");
+    make_folder(path() / "depth");
+    for (const int i : {0, 1, 2}) {
+      write("rgb/" + std::to_string(i) + ".png", encoded(".png", colour_image(20 + i)));
+      write("depth/" + std::to_string(i) + ".png", encoded(".png", depth_image(5000 + 10 * i)));
+    }
+    write("rgb.txt", "# colour\n1305031102.175304 rgb/0.png\n1305031102.211214 rgb/1.png\n1305031102.243211 rgb/2.png\n");
+    write("depth.txt", "1305031102.160407 depth/0.png\n1305031102.226738 depth/1.png\n1305031102.300000 depth/2.png\n");
+    write("groundtruth.txt",
+          "# seconds x y z qx qy qz qw\n1305031102.1700 1 2 3 0 0 0 1\n1305031102.1800 2 2 3 0 0 0 1\n1305031102.2100 4 2 3 0 0 0 1\n");
+  }
+  void write(const std::string& name, const std::string& bytes) { write_file(folder_.path() / name, bytes); }
+  fs::path path() const { return folder_.path(); }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(TumFolder, AssociatesByMutualNearestStamp) {
+  const auto recording = open_recording(path());
+  const StreamInfo& info = recording->info();
+  EXPECT_EQ(info.cameras.at("camera").intrinsics.fx, 517.3);
+  EXPECT_EQ(info.up_W, Eigen::Vector3d::UnitZ());
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  // The second depth image lies 15.5 ms after the second picture and 16.5 ms before the third; the third is too late for any.
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0].stamp, 1305031102175304000);
+  EXPECT_EQ(frames[1].stamp, 1305031102211214000);
+  EXPECT_EQ(frames[0].depth.at<float>(2, 2), 1000 * 0.001f);
+  EXPECT_EQ(frames[1].depth.at<float>(2, 2), 1002 * 0.001f);
+  ASSERT_TRUE(frames[0].recorded_X_WC);
+  EXPECT_NEAR(frames[0].recorded_X_WC->translation().x(), 1.5304, 1e-6);
+  ASSERT_TRUE(frames[1].recorded_X_WC);
+  EXPECT_EQ(frames[1].recorded_X_WC->translation().x(), 4.0);
+}
+
+TEST_F(TumFolder, CalibrationFilesAndScaleCount) {
+  write("calibration.txt", "400 401 4 3 0.1 0.2\n");
+  RecordingConfig config;
+  config.depth_scale = 1000;
+  const auto recording = open_recording(path(), config);
+  EXPECT_EQ(recording->info().cameras.at("camera").intrinsics.fy, 401);
+  EXPECT_EQ(all_frames(*recording)[0].depth.at<float>(2, 2), 5000 * 0.001f);
+  write("calibration.txt", "400 401 4\n");
+  EXPECT_ERROR(open_recording(path()), "calibration.txt", "expected 'fx fy cx cy'");
+}
+
+TEST_F(TumFolder, DamageIsNamed) {
+  write("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "groundtruth.txt:2:", "not a pose");
+  write("groundtruth.txt", "1 0 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "groundtruth.txt:1:", "expected 'seconds x y z qx qy qz qw'");
+  fs::remove(path() / "groundtruth.txt");
+  EXPECT_FALSE(open_recording(path())->info().has_recorded_poses);
+  write("depth.txt", "1305031102.160407 depth/7.png\n");
+  EXPECT_ERROR(open_recording(path()), "depth.txt:1:", "'depth/7.png' does not exist");
+  write("depth.txt", "1305031102.160407 ../../etc/passwd\n");
+  EXPECT_ERROR(open_recording(path()), "leaves the folder");
+  write("depth.txt", "soon depth/1.png\n");
+  EXPECT_ERROR(open_recording(path()), "depth.txt:1:", "'soon' is not a number");
+  write("depth.txt", "99 depth/1.png\n");
+  EXPECT_ERROR(open_recording(path()), "no colour picture with a depth image");
+  fs::remove(path() / "depth.txt");
+  EXPECT_ERROR(open_recording(path()), "depth.txt: no such file");
+}
+
+TEST_F(TumFolder, OurOwnFilesReadBackToTheSameBits) {
+  RecordingCalibration calibration;
+  calibration.has_camera = calibration.has_laser = true;
+  calibration.camera.width = 8;
+  calibration.camera.height = 6;
+  calibration.camera.fx = 612.3456789012345;
+  calibration.camera.fy = 612.1;
+  calibration.camera.cx = 3.5;
+  calibration.camera.cy = 2.5;
+  calibration.camera.name = "front";
+  Pose X_BC = make_upright_pose(0.1, 0.2, 1.4, 0.3);
+  X_BC.linear() = rotation_from_rpy(0.01, 0.7853981, 0.3) * optical_from_forward();
+  const Pose X_BL = make_upright_pose(0.275, 0.2, 0.3, 0.766);
+  const Pose X_WB = make_upright_pose(1.0 / 3, 2.0 / 7, 0, 1.1);
+  calibration.camera.X_BC = pose_numbers(X_BC);
+  calibration.laser.X_BL = pose_numbers(X_BL);
+  calibration.X_WB_start = pose_numbers(X_WB);
+  write("recording.yaml", write_config([&](Fields& f) { calibration.visit(f); }));
+
+  LaserScan scan;
+  scan.stamp = 1305031102'175304000;
+  scan.sensor = "laser";
+  scan.angle_min = -2.356194490192345;
+  scan.angle_increment = 0.008726646259971648;
+  scan.beam_interval = 55556;
+  scan.range_min = 0.05;
+  scan.range_max = 30;
+  scan.ranges = {0.0f, 1.23f, 29.99f, 0.1f};
+  OdometryModel odometry(OdometryConfig{}, 5, "odometry");
+  std::vector<OdometryReading> readings;
+  std::string odometry_text;
+  for (int i = 0; i < 50; ++i) {
+    readings.push_back(odometry.advance(1305031102'000000000 + i * 20'000'000, make_upright_pose(0.1 * i, 0.01 * i, 0, 0.05 * i)));
+    odometry_text += odometry_line(readings.back());
+  }
+  write("laser.txt", laser_line(scan));
+  write("odometry.txt", odometry_text);
+
+  const auto recording = open_recording(path());
+  const StreamInfo& info = recording->info();
+  EXPECT_EQ(info.cameras.at("front").X_BC.matrix(), X_BC.matrix());
+  EXPECT_EQ(info.cameras.at("front").intrinsics.fx, calibration.camera.fx);
+  EXPECT_EQ(info.lasers.at("laser").X_BL.matrix(), X_BL.matrix());
+  EXPECT_EQ(info.X_WB_start.matrix(), X_WB.matrix());
+  EXPECT_TRUE(info.has_odometry);
+  Stamp last = 0;
+  std::size_t odometry_count = 0;
+  int scans = 0;
+  while (const auto event = recording->next()) {
+    EXPECT_GE(stamp_of(*event), last);
+    last = stamp_of(*event);
+    if (const auto* reading = std::get_if<OdometryReading>(&*event)) {
+      ASSERT_LT(odometry_count, readings.size());
+      EXPECT_EQ(reading->stamp, readings[odometry_count].stamp);
+      EXPECT_EQ(reading->X_OB.matrix(), readings[odometry_count].X_OB.matrix());
+      ++odometry_count;
+    } else if (const auto* read = std::get_if<LaserScan>(&*event)) {
+      ++scans;
+      EXPECT_EQ(read->stamp, scan.stamp);
+      EXPECT_EQ(read->ranges, scan.ranges);
+      EXPECT_EQ(read->angle_min, scan.angle_min);
+      EXPECT_EQ(read->angle_increment, scan.angle_increment);
+      EXPECT_EQ(read->beam_interval, scan.beam_interval);
+      EXPECT_EQ(read->range_max, scan.range_max);
+    } else {
+      // Of equal stamps the scan comes first.
+      EXPECT_EQ(scans, 1);
+    }
+  }
+  EXPECT_EQ(odometry_count, readings.size());
+  EXPECT_EQ(scans, 1);
+}
+
+TEST(LaserLog, PlaysWithoutACameraAndNamesDamage) {
+  const test::TemporaryFolder folder;
+  write_file(folder.path() / "laser.txt", "2.5 -1 0.5 0 0.05 30 3 1 0 2\n1.5 -1 0.5 0 0.05 30 1 4\n");
+  const auto recording = open_recording(folder.path());
+  EXPECT_TRUE(recording->info().cameras.empty());
+  EXPECT_EQ(recording->info().duration_s, 1.0);
+  EXPECT_EQ(stamp_of(*recording->next()), 1'500'000'000);
+  write_file(folder.path() / "laser.txt", "2.5 -1 0.5 0 0.05 30 3 1 0\n");
+  EXPECT_ERROR(open_recording(folder.path()), "laser.txt:1:", "announces '3' ranges and holds 2");
+  write_file(folder.path() / "laser.txt", "2.5 -1 0.5 0 0.05 30 1 -1\n");
+  EXPECT_ERROR(open_recording(folder.path()), "'-1' is not a range");
+  write_file(folder.path() / "laser.txt", "2.5 -1\n");
+  EXPECT_ERROR(open_recording(folder.path()), "expected seven");
+  write_file(folder.path() / "laser.txt", "");
+  write_file(folder.path() / "odometry.txt", "1 2 3\n");
+  EXPECT_ERROR(open_recording(folder.path()), "odometry.txt:1:", "expected 'seconds x y yaw'");
+}
+
+TEST(RecordingStamps, AreExactToTheNanosecond) {
+  for (const Stamp stamp : {Stamp{0}, Stamp{1}, Stamp{-1'500'000'001}, Stamp{1305031102'175304123}, Stamp{999'999'999}}) {
+    EXPECT_EQ(parse_text_stamp("f", 1, stamp_text(stamp)), stamp);
+  }
+  EXPECT_EQ(parse_text_stamp("f", 1, "12"), 12'000'000'000);
+  EXPECT_EQ(parse_text_stamp("f", 1, "1.5e1"), 15'000'000'000);
+  for (const char* bad : {"", "x", "1.2.3", "nan", "1e300", "99999999999999999999", "1.x"})
+    EXPECT_ERROR(parse_text_stamp("f", 1, bad), "f:1:");
+}
+
+TEST(RecordingConfig, ChecksItsDirections) {
+  RecordingConfig config;
+  EXPECT_ERROR(read_config_text("up: [0, 0]", "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", "'up' is not a direction");
+  config = {};
+  EXPECT_ERROR(read_config_text("intrinsics: [1]", "c.yaml", [&](Fields& f) { config.visit(f); }), "four numbers");
+}
+
+TEST(RealRecordings, SevenScenesPlays) {
+  WARETWIN_NEED_DATA("rgbd_7scenes");
+  const auto recording = open_recording(test::shared_data("rgbd_7scenes"));
+  EXPECT_EQ(recording->info().frame_count, 60);
+  EXPECT_EQ(recording->info().up_W, Eigen::Vector3d(0, -1, 0));
+  EXPECT_EQ(recording->info().cameras.at("camera").intrinsics.width, 640);
+  auto event = recording->next();
+  auto frame = std::get<RgbdFrame>(*event);
+  load_pictures(frame);
+  EXPECT_EQ(frame.colour.size(), cv::Size(640, 480));
+  EXPECT_GT(cv::countNonZero(frame.depth), 640 * 480 / 2);
+  double farthest = 0;
+  cv::minMaxLoc(frame.depth, nullptr, &farthest);
+  EXPECT_LT(farthest, 12.0);
+  int frames = 1;
+  Stamp last = stamp_of(*event);
+  while ((event = recording->next())) {
+    EXPECT_GT(stamp_of(*event), last);
+    last = stamp_of(*event);
+    ++frames;
+  }
+  EXPECT_EQ(frames, 60);
+}
+
+TEST(RealRecordings, Sun3dPlays) {
+  WARETWIN_NEED_DATA("rgbd_sun3d");
+  const auto recording = open_recording(test::shared_data("rgbd_sun3d"));
+  EXPECT_EQ(recording->info().frame_count, 5);
+  EXPECT_EQ(recording->info().up_W, Eigen::Vector3d(0, 1, 0));
+  for (const RgbdFrame& frame : all_frames(*recording)) {
+    EXPECT_GT(cv::countNonZero(frame.depth), 640 * 480 / 2);
+    ASSERT_TRUE(frame.recorded_X_WC);
+    EXPECT_NEAR(frame.recorded_X_WC->linear().determinant(), 1.0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace waretwin
