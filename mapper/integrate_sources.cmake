@@ -4,5 +4,10 @@ set(MAPPER_INTEGRATE_SOURCES
   integrate/label_counts.cpp
   integrate/marching_cubes_table.cpp
   integrate/mesher.cpp
+  integrate/occupancy.cpp
   integrate/point_groups.cpp
-  integrate/tsdf_volume.cpp)
+  integrate/tsdf_volume.cpp
+  output/list_files.cpp
+  output/map_archive.cpp
+  output/map_glb.cpp
+  output/mesh_files.cpp)

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/files.h"
+#include "mapper/output/map_files.h"
+
+namespace waretwin {
+
+namespace {
+
+std::string formatted(double value, const char* format) {
+  char text[400];  // a double has at most 309 digits before the point
+  std::snprintf(text, sizeof text, format, value == 0.0 ? 0.0 : value);
+  return text;
+}
+
+std::string nine(double value) { return formatted(value, "%.9f"); }
+
+}  // namespace
+
+void write_occupancy(const std::filesystem::path& file, const OccupancyGrid& grid) {
+  std::string image = "P5\n" + std::to_string(grid.width) + " " + std::to_string(grid.height) + "\n255\n";
+  for (int y = grid.height - 1; y >= 0; --y) {
+    for (int x = 0; x < grid.width; ++x) {
+      const VoxelState state = grid.at(x, y);
+      image += static_cast<char>(state == VoxelState::occupied ? 0 : state == VoxelState::free ? 254 : 205);
+    }
+  }
+  write_file(file, image);
+  std::filesystem::path yaml = file;
+  yaml.replace_extension(".yaml");
+  write_file(yaml, "image: " + file.filename().string() + "\nmode: trinary\nresolution: " + formatted(grid.resolution_m, "%.9g") +
+                       "\norigin: [" + nine(grid.origin.x()) + ", " + nine(grid.origin.y()) +
+                       ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+void write_cuboids(const std::filesystem::path& file, const ObjectList& objects) {
+  std::vector<const MappedObject*> order;
+  for (const MappedObject& object : objects) order.push_back(&object);
+  std::sort(order.begin(), order.end(), [](const MappedObject* a, const MappedObject* b) { return a->id < b->id; });
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const MappedObject* object : order) {
+    const Cuboid box = canonical(object->cuboid);
+    nlohmann::ordered_json entry;
+    entry["id"] = object->id;
+    entry["class"] = object->class_name;
+    entry["centre"] = {box.centre.x(), box.centre.y(), box.centre.z()};
+    entry["yaw"] = box.yaw;
+    entry["size"] = {box.size.x(), box.size.y(), box.size.z()};
+    entry["score"] = static_cast<double>(object->score);
+    list.push_back(std::move(entry));
+  }
+  nlohmann::ordered_json root;
+  root["frame"] = "world";
+  root["objects"] = std::move(list);
+  write_file(file, root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+void write_trajectory(const std::filesystem::path& file, const std::vector<std::pair<Stamp, Pose>>& poses) {
+  std::string text;
+  for (const auto& [stamp, pose] : poses) {
+    // From the integer nanoseconds: a double does not hold an epoch stamp to the last digit.
+    const bool negative = stamp < 0;
+    const std::uint64_t ns = negative ? ~static_cast<std::uint64_t>(stamp) + 1 : static_cast<std::uint64_t>(stamp);
+    const std::string fraction = std::to_string(ns % kNanosecondsPerSecond);
+    text += (negative ? "-" : "") + std::to_string(ns / kNanosecondsPerSecond) + "." + std::string(9 - fraction.size(), '0') + fraction;
+    Eigen::Quaterniond q(pose.linear());
+    q.normalize();
+    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+    const Eigen::Vector3d p = pose.translation();
+    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) text += " " + nine(value);
+    text += "\n";
+  }
+  write_file(file, text);
+}
+
+}  // namespace waretwin
