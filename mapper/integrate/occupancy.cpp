@@ -62,7 +62,9 @@ OccupancyGrid make_occupancy_grid(const TsdfVolume& volume, const OccupancyConfi
         const auto i = static_cast<std::size_t>(xy);
         const int x = 8 * (index.x() - x0) + xy % 8, y = 8 * (index.y() - y0) + xy / 8;
         grid.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(x)] =
-            occupied[i] > 0 ? VoxelState::occupied : free[i] >= wanted ? VoxelState::free : VoxelState::unknown;
+            occupied[i] > 0     ? VoxelState::occupied
+            : free[i] >= wanted ? VoxelState::free
+                                : VoxelState::unknown;
       }
     }
   });

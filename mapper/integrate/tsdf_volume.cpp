@@ -88,7 +88,9 @@ VoxelState TsdfVolume::state(const TsdfBlock& block, int offset) const {
     const float reach = static_cast<float>(config_.voxel_m);
     if (std::abs(distance) <= reach) return VoxelState::occupied;
     if (distance > 0.0f) return VoxelState::free;
-    // Behind a surface nothing is known of what fills it, unless another frame looked through.
+    // Behind a surface, as deep as it was recorded. Distances run along the rays, so that under grazing ones no voxel may come within
+    // one voxel of 0: a level top seen from low would not be there at all.
+    if (block.free_frames[i] <= block.surface->voxels[i].surface_frames) return VoxelState::occupied;
   }
   return block.free_frames[i] > 0 ? VoxelState::free : VoxelState::unknown;
 }

@@ -116,7 +116,8 @@ class Reader {
   }
   double number(const char* what, double low, double high) {
     const auto v = value<double>();
-    if (!(v >= low && v <= high)) fail(std::string(what) + " " + std::to_string(v) + "; expected " + std::to_string(low) + " to " + std::to_string(high));
+    if (!(v >= low && v <= high))
+      fail(std::string(what) + " " + std::to_string(v) + "; expected " + std::to_string(low) + " to " + std::to_string(high));
     return v;
   }
   double finite(const char* what) { return number(what, -1e12, 1e12); }
@@ -127,7 +128,8 @@ class Reader {
   }
   std::int32_t integer(const char* what, std::int32_t low, std::int32_t high) {
     const auto v = value<std::int32_t>();
-    if (v < low || v > high) fail(std::string(what) + " " + std::to_string(v) + "; expected " + std::to_string(low) + " to " + std::to_string(high));
+    if (v < low || v > high)
+      fail(std::string(what) + " " + std::to_string(v) + "; expected " + std::to_string(low) + " to " + std::to_string(high));
     return v;
   }
   std::string text() {
@@ -189,7 +191,8 @@ void write_object(Writer& w, const MappedObject& o) {
   w.value(static_cast<std::int32_t>(o.id));
   w.text(o.class_name);
   w.text(o.cuboid.frame);
-  for (const double v : {o.cuboid.centre.x(), o.cuboid.centre.y(), o.cuboid.centre.z(), o.cuboid.yaw, o.cuboid.size.x(), o.cuboid.size.y(), o.cuboid.size.z()}) {
+  for (const double v : {o.cuboid.centre.x(), o.cuboid.centre.y(), o.cuboid.centre.z(), o.cuboid.yaw, o.cuboid.size.x(), o.cuboid.size.y(),
+                         o.cuboid.size.z()}) {
     w.value(v);
   }
   w.value(o.score);
@@ -303,8 +306,10 @@ LoadedMap load_map(const std::filesystem::path& file) {
   std::uint64_t print;
   std::memcpy(&version, bytes.data() + sizeof kMagic, sizeof version);
   std::memcpy(&print, bytes.data() + sizeof kMagic + sizeof version, sizeof print);
-  if (version != kVersion) throw Error(file, "map of version " + std::to_string(version) + "; expected version " + std::to_string(kVersion));
-  if (fingerprint(bytes.data() + kHeader, bytes.size() - kHeader) != print) throw Error(file, "damaged map: cut short or changed since it was written");
+  if (version != kVersion)
+    throw Error(file, "map of version " + std::to_string(version) + "; expected version " + std::to_string(kVersion));
+  if (fingerprint(bytes.data() + kHeader, bytes.size() - kHeader) != print)
+    throw Error(file, "damaged map: cut short or changed since it was written");
 
   Reader r(file, bytes.data() + kHeader, bytes.size() - kHeader);
   LoadedMap map;
