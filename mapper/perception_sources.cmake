@@ -1,6 +1,11 @@
 set(MAPPER_PERCEPTION_SOURCES
   associate/paper_associator.cpp
   associate/similarity.cpp
+  detect/boxes_detector.cpp
+  detect/darknet_cfg.cpp
+  detect/model_files.cpp
+  detect/yolo_decode.cpp
+  detect/yolo_detector.cpp
   localise/laser_icp_localiser.cpp
   localise/odometry_history.cpp
   localise/point_to_line.cpp

@@ -9,14 +9,14 @@
 namespace waretwin {
 
 struct DetectConfig {
-  double confidence = 0.5;           // detections below this score are dropped
-  double nms_iou = 0.45;             // of two boxes of one class that overlap more, the better one stays
-  int input_width = 0;               // pixels; 0 = what the model says (Darknet cfg), 640 for ONNX
-  int input_height = 0;              // pixels
-  std::string letterbox = "auto";    // "auto": on for ONNX, off for Darknet, which stretches
-  std::string names;                 // file with one class name a line; empty = beside the model
-  std::vector<std::string> classes;  // names that are kept; empty = all
-  std::vector<std::string> rename;   // "from=to" pairs, applied before `classes`
+  double confidence = 0.5;                // detections below this score are dropped
+  double nms_iou = 0.45;                  // of two boxes of one class that overlap more, the better one stays
+  int input_width = 0;                    // pixels; 0 = what the model says (Darknet cfg), 640 for ONNX
+  int input_height = 0;                   // pixels
+  std::string letterbox = "auto";         // "auto": on for ONNX, off for Darknet, which stretches
+  std::string names = {};                 // file with one class name a line; empty = beside the model
+  std::vector<std::string> classes = {};  // names that are kept; empty = all
+  std::vector<std::string> rename = {};   // "from=to" pairs, applied before `classes`
 
   void visit(Fields& f) {
     f("confidence", confidence, "smallest score of a detection", {.min = 0, .max = 1});

@@ -205,6 +205,7 @@ ScanMatch match_scans(const ReferenceScan& reference, const std::vector<Eigen::V
     match.converged = false;
     return match;
   };
+  std::vector<PlanarMotion> visited;
   for (match.iterations = 0; match.iterations < config.max_iterations && !match.converged;) {
     const std::vector<Candidate> candidates = correspondences(reference, points_S, match.X_RS, config);
     if (candidates.size() < kFewestPairs) return reject();
@@ -216,13 +217,18 @@ ScanMatch match_scans(const ReferenceScan& reference, const std::vector<Eigen::V
     match.X_RS = solution.motion;
     match.translation_information = solution.translation_information;
     ++match.iterations;
-    match.converged = step.translation.norm() <= config.translation_epsilon_m && std::abs(step.yaw) <= rotation_epsilon;
+    const auto small = [&](const PlanarMotion& motion) {
+      return motion.translation.norm() <= config.translation_epsilon_m && std::abs(motion.yaw) <= rotation_epsilon;
+    };
+    // Correspondences of noisy scans may alternate between a few sets for ever: back where it once was, the search has ended too.
+    match.converged = small(step) || std::any_of(visited.begin(), visited.end(),
+                                                 [&](const PlanarMotion& earlier) { return small(earlier.inverse() * match.X_RS); });
+    visited.push_back(match.X_RS);
   }
   const std::vector<Candidate> candidates = correspondences(reference, points_S, match.X_RS, config);
   if (candidates.size() < kFewestPairs) return reject();
   const std::vector<PointOnLine> pairs = trimmed(candidates, config, match.residual_m);
   match.matched_fraction = static_cast<double>(pairs.size()) / static_cast<double>(points_S.size());
-  // An iteration that alternates between two sets of correspondences has not converged in the strict sense, yet its result is as good.
   match.believable = match.matched_fraction >= config.min_matched_fraction && match.residual_m <= config.max_residual_m;
   return match;
 }

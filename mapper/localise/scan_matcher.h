@@ -41,7 +41,7 @@ struct ScanMatch {
   double matched_fraction = 0.0;         // kept correspondences / points of the scan
   double translation_information = 0.0;  // see PointToLineSolution; below about 0.02 one direction is the guess's (a corridor)
   int iterations = 0;
-  bool converged = false;   // ended by small steps
+  bool converged = false;   // ended by a small step, or by coming back to where it was
   bool believable = false;  // enough points matched and the residual small, by the configuration's limits
 };
 

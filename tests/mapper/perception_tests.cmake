@@ -1,2 +1,5 @@
 set(MAPPER_PERCEPTION_TESTS
-  localise_scan_matcher.cpp)
+  detect_boxes.cpp
+  detect_yolo.cpp
+  localise_scan_matcher.cpp
+  segment_paper.cpp)
