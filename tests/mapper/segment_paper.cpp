@@ -46,7 +46,9 @@ TEST(PaperSegmenter, CutsAConveyorFromItsCabinet) {
         ASSERT_EQ(object.pixels.size(), object.points_W.size());
         int own = 0;
         for (std::size_t i = 0; i < object.pixels.size(); ++i) {
-          if (i > 0) ASSERT_LT(object.pixels[i - 1], object.pixels[i]);
+          if (i > 0) {
+            ASSERT_LT(object.pixels[i - 1], object.pixels[i]);
+          }
           own += traced.masks[1].at<std::uint8_t>(object.pixels[i] / width, object.pixels[i] % width) != 0;
         }
         EXPECT_GT(own, 0.97 * object.pixels.size());
