@@ -47,9 +47,9 @@ void add_material(std::string& text, const Scene& scene, const Material& m) {
   if (m.alpha_mask) uses += ", alpha mask";
   if (m.double_sided) uses += ", double-sided";
   if (!std::isnan(m.reflectivity_850nm)) uses += ", reflectivity at 850 nm " + std::to_string(m.reflectivity_850nm).substr(0, 4);
-  add_line(text, "  %.80s: rgba %.2f %.2f %.2f %.2f, metallic %.2f, roughness %.2f%.600s", shown(m.name), static_cast<double>(m.base_colour[0]),
-           static_cast<double>(m.base_colour[1]), static_cast<double>(m.base_colour[2]), static_cast<double>(m.base_colour[3]),
-           static_cast<double>(m.metallic), static_cast<double>(m.roughness), uses.c_str());
+  add_line(text, "  %.80s: rgba %.2f %.2f %.2f %.2f, metallic %.2f, roughness %.2f%.600s", shown(m.name),
+           static_cast<double>(m.base_colour[0]), static_cast<double>(m.base_colour[1]), static_cast<double>(m.base_colour[2]),
+           static_cast<double>(m.base_colour[3]), static_cast<double>(m.metallic), static_cast<double>(m.roughness), uses.c_str());
 }
 
 void add_light(std::string& text, const Light& light) {
@@ -72,8 +72,9 @@ void add_light(std::string& text, const Light& light) {
 
 void add_object(std::string& text, const TrueObject& object) {
   const Cuboid& c = object.cuboid;
-  add_line(text, "  %d %.40s '%.80s': centre (%.3f, %.3f, %.3f) m, yaw %.1f deg, size %.3f x %.3f x %.3f m", object.id, object.class_name.c_str(),
-           object.name.c_str(), c.centre.x(), c.centre.y(), c.centre.z(), to_degrees(c.yaw), c.size.x(), c.size.y(), c.size.z());
+  add_line(text, "  %d %.40s '%.80s': centre (%.3f, %.3f, %.3f) m, yaw %.1f deg, size %.3f x %.3f x %.3f m", object.id,
+           object.class_name.c_str(), object.name.c_str(), c.centre.x(), c.centre.y(), c.centre.z(), to_degrees(c.yaw), c.size.x(),
+           c.size.y(), c.size.z());
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+#include "scenes/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/describe.h"
+#include "tests/scenes/gltf_writer.h"
+#include "tests/support/expect_error.h"
+#include "tests/support/test_data.h"
+
+namespace waretwin::test {
+namespace {
+
+const char* const kYaml =
+    "models:\n"
+    "  - file: box.glb\n"
+    "  - {file: box.glb, x_m: 5, yaw_deg: 90, class: crate, name: second}\n"
+    "truth:\n"
+    "  - {pattern: 'conv*', class: conveyor}\n"
+    "lighting:\n"
+    "  lights: [{kind: spot, position_m: [0, 0, 2], direction: [0, 0, -2], intensity: 10}]\n"
+    "robot:\n"
+    "  route:\n"
+    "    - {x_m: 0, y_m: 0}\n"
+    "    - {x_m: 1, y_m: 0, heading_deg: 45, wait_s: 2}\n"
+    "sensors:\n"
+    "  lasers: {laser: {}}\n";
+
+class ScenarioTest : public ::testing::Test {
+ protected:
+  ScenarioTest() {
+    GltfWriter w;
+    w.show(w.cube(), {{"name", "conveyor_1"}, {"scale", {2, 1, 1}}});
+    put_file(folder.path() / "box.glb", w.glb());
+  }
+  std::filesystem::path write(std::string yaml, const std::string& from = "", const std::string& to = "") {
+    if (!from.empty()) yaml.replace(yaml.find(from), from.size(), to);
+    put_file(folder.path() / "scenario.yaml", yaml);
+    return folder.path() / "scenario.yaml";
+  }
+  TemporaryFolder folder;
+};
+
+TEST_F(ScenarioTest, BuildsTheScene) {
+  const Scenario scenario = load_scenario(write(kYaml), {{"models.1.y_m", "3"}});
+  EXPECT_FALSE(scenario.robot.route[0].heading_deg);
+  EXPECT_DOUBLE_EQ(scenario.robot.route[1].heading_deg.value(), 45.0);
+  const Scene scene = build_scene(scenario);
+  EXPECT_EQ(scene.meshes.size(), 1u);  // one file, placed twice
+  EXPECT_EQ(scene.instances.size(), 2u);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.objects[0].class_name, "conveyor");
+  EXPECT_EQ(scene.objects[0].name, "conveyor_1");
+  EXPECT_EQ(scene.objects[1].id, 2);
+  EXPECT_EQ(scene.objects[1].class_name, "crate");
+  EXPECT_EQ(scene.objects[1].name, "second");
+  // x 0..2, y 0..1 in the file's z; turned by 90 deg about (5, 3): x' = 5 - y, y' = 3 + x, where the file's z is -y.
+  const Cuboid& c = scene.objects[1].cuboid;
+  EXPECT_TRUE((c.centre - Eigen::Vector3d(5.5, 4.0, 0.5)).norm() < 1e-6) << c.centre.transpose();
+  EXPECT_NEAR(c.yaw, 1.5707963, 1e-5);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_TRUE(scene.lights[0].direction.isApprox(-Eigen::Vector3f::UnitZ()));
+  const std::string text = describe_scenario(scenario);
+  EXPECT_NE(text.find("crate 'second'"), std::string::npos) << text;
+}
+
+TEST_F(ScenarioTest, ResolvedValuesReadBack) {
+  Scenario scenario = load_scenario(write(kYaml));
+  const std::string text = write_config([&](Fields& f) { scenario.visit(f); });
+  Scenario again;
+  read_config_text(text, "again", [&](Fields& f) { again.visit(f); });
+  EXPECT_EQ(text, write_config([&](Fields& f) { again.visit(f); }));
+  EXPECT_FALSE(again.robot.route[0].heading_deg);
+}
+
+TEST_F(ScenarioTest, ErrorsNameFileLineAndKey) {
+  put_file(folder.path() / "other.txt", "");
+  EXPECT_ERROR(load_scenario(write(kYaml, "file: box.glb\n", "file: bax.glb\n")), "scenario.yaml:2", "models.0.file", "no such file");
+  EXPECT_ERROR(load_scenario(write(kYaml, "file: box.glb\n", "file: ../box.glb\n")), "scenario.yaml:2", "inside the scenario's folder");
+  EXPECT_ERROR(load_scenario(write(kYaml, "file: box.glb\n", "file: /tmp/box.glb\n")), "scenario.yaml:2", "relative");
+  EXPECT_ERROR(load_scenario(write(kYaml, "file: box.glb\n", "file: other.txt\n")), "scenario.yaml:2", ".glb");
+  EXPECT_ERROR(load_scenario(write(kYaml, "class: conveyor", "class: ''")), "scenario.yaml:5", "class");
+  EXPECT_ERROR(load_scenario(write(kYaml, "wait_s", "wiat_s")), "scenario.yaml:11", "wait_s");
+  EXPECT_ERROR(load_scenario(write(kYaml, "direction: [0, 0, -2]", "direction: [0, 0, 0]")), "scenario.yaml:7", "direction");
+  EXPECT_ERROR(load_scenario(write(kYaml, "lasers: {laser: {}}", "lasers: {}")), "sensors", "camera");
+  EXPECT_ERROR(load_scenario(write("models: []\nrobot: {route: [{x_m: 0, y_m: 0}]}\n")), "scenario.yaml", "models");
+  EXPECT_ERROR(load_scenario(write(kYaml), {{"models.0.file", "bax.glb"}}), "models.0.file", "bax.glb");
+  EXPECT_ERROR(build_scene(load_scenario(write(kYaml, "conv*", "crane*"))), "truth.0.pattern", "crane*", "matches no node");
+  EXPECT_ERROR(load_scenario(folder.path() / "none.yaml"), "none.yaml", "no such file");
+}
+
+}  // namespace
+}  // namespace waretwin::test
