@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <sstream>
 
 #include "core/error.h"
@@ -54,7 +55,8 @@ double parse_text_number(const std::filesystem::path& file, int line, const std:
   if (begin != end && *begin == '+') ++begin;
   double value = 0.0;
   const auto result = std::from_chars(begin, end, value);
-  if (result.ec == std::errc::result_out_of_range && result.ptr == end) return 0.0 * value;
+  // Too small for a double is 0, too large infinity; from_chars does not say which of the two it met.
+  if (result.ec == std::errc::result_out_of_range && result.ptr == end) return std::strtod(word.c_str(), nullptr);
   if (result.ec != std::errc() || result.ptr != end) throw Error(file, line, shown(word) + " is not a number");
   return value;
 }

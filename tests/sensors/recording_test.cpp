@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -343,6 +344,13 @@ TEST(RecordingStamps, AreExactToTheNanosecond) {
   EXPECT_EQ(parse_text_stamp("f", 1, "1.5e1"), 15'000'000'000);
   for (const char* bad : {"", "x", "1.2.3", "nan", "1e300", "99999999999999999999", "1.x"})
     EXPECT_ERROR(parse_text_stamp("f", 1, bad), "f:1:");
+}
+
+TEST(RecordingNumbers, BeyondTheRangeOfADoubleAreZeroOrInfinite) {
+  EXPECT_EQ(parse_text_number("f", 1, "1e-999"), 0.0);
+  EXPECT_EQ(parse_text_number("f", 1, "-1e999"), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parse_text_number("f", 1, "+2.5"), 2.5);
+  EXPECT_ERROR(parse_text_number("f", 3, "2,5"), "f:3: '2,5' is not a number");
 }
 
 TEST(RecordingConfig, ChecksItsDirections) {
