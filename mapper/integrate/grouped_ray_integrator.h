@@ -25,7 +25,7 @@ class GroupedRayIntegrator : public Integrator {
   explicit GroupedRayIntegrator(const TsdfConfig& config) : config_(config) {}
 
   // Throws Error when the volume has another voxel size or truncation than this configuration (a map that is resumed with other
-  // settings), and when the pose leads out of the volume's reach (10 km).
+  // settings), and when the pose leads out of the volume's reach (8 million voxels).
   void integrate(const RgbdFrame& frame, const Intrinsics& intrinsics, const std::vector<std::int32_t>& labels, const Pose& X_WC,
                  TsdfVolume& volume) override;
 

@@ -85,7 +85,8 @@ Grid grid_around(const Eigen::Vector3d& p_WC, double voxel_m) {
   for (int k = 0; k < 3; ++k) {
     const double camera = p_WC[k] / voxel_m;
     if (!(std::abs(camera) < 8e6))
-      throw Error("camera at " + std::to_string(p_WC[k]) + " m is outside the map; expected a position within 4 million voxels");
+      throw Error("camera at " + std::to_string(p_WC[k]) +
+                  " m is outside the map; expected a position within 8 million voxels of the origin");
     const int corner = static_cast<int>(std::floor(camera / 8.0)) * 8;
     grid.origin[k] = corner - kHalfSpan;
     grid.shift[k] = static_cast<float>(camera - corner);

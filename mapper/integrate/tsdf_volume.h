@@ -38,6 +38,8 @@ struct TsdfBlock {
   std::array<std::uint8_t, 512> free_frames = {};  // frames that saw through the voxel, up to 255
 };
 
+// Occupied: within one voxel of a surface, or behind one as deep as it was recorded and not seen through more often. Free: before a
+// surface, or seen through by any frame. Unknown: neither.
 enum class VoxelState : std::uint8_t { unknown, free, occupied };
 
 class TsdfVolume {

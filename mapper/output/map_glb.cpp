@@ -46,7 +46,7 @@ class Builder {
     model_.defaultScene = 0;
   }
 
-  void add_node(const std::string& name, const Mesh* mesh, tinygltf::Value extras) {
+  void add_node(const std::string& name, const SurfaceMesh* mesh, tinygltf::Value extras) {
     tinygltf::Node node;
     node.name = name;
     node.extras = std::move(extras);
@@ -85,7 +85,7 @@ class Builder {
     return static_cast<int>(model_.accessors.size()) - 1;
   }
 
-  int add_mesh(const std::string& name, const Mesh& mesh) {
+  int add_mesh(const std::string& name, const SurfaceMesh& mesh) {
     std::vector<std::array<float, 3>> positions, normals;
     std::vector<std::array<std::uint16_t, 4>> colours;
     std::vector<std::uint32_t> indices;
@@ -146,15 +146,15 @@ tinygltf::Value extras_of(const MappedObject& object) {
 
 }  // namespace
 
-void write_map_glb(const std::filesystem::path& file, const Mesh& mesh, const ObjectList& objects) {
+void write_map_glb(const std::filesystem::path& file, const SurfaceMesh& mesh, const ObjectList& objects) {
   // Labels that no object has any more belong to the background.
-  Mesh relabelled = mesh;
+  SurfaceMesh relabelled = mesh;
   for (std::int32_t& label : relabelled.labels) {
     const auto same = [&](const MappedObject& object) { return object.id == label; };
     if (label != 0 && std::none_of(objects.begin(), objects.end(), same)) label = 0;
   }
   const auto parts = split_by_label(relabelled);
-  const auto part = [&](std::int32_t label) -> const Mesh* {
+  const auto part = [&](std::int32_t label) -> const SurfaceMesh* {
     for (const auto& [part_label, part_mesh] : parts) {
       if (part_label == label) return &part_mesh;
     }

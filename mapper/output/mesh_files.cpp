@@ -28,7 +28,7 @@ constexpr const char* kColour = "property uchar red\nproperty uchar green\nprope
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_ply(const std::filesystem::path& file, const SurfaceMesh& mesh) {
   std::string bytes = header(std::string(kPosition) + kNormal + kColour, mesh.vertices.size(), mesh.triangles.size());
   bytes.reserve(bytes.size() + 27 * mesh.vertices.size() + 13 * mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -43,7 +43,7 @@ void write_ply(const std::filesystem::path& file, const Mesh& mesh) {
   write_file(file, bytes);
 }
 
-void write_object_plys(const std::filesystem::path& folder, const Mesh& mesh, const ObjectList& objects) {
+void write_object_plys(const std::filesystem::path& folder, const SurfaceMesh& mesh, const ObjectList& objects) {
   make_folder(folder);
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -59,7 +59,7 @@ void write_object_plys(const std::filesystem::path& folder, const Mesh& mesh, co
   }
 }
 
-void write_cloud_ply(const std::filesystem::path& file, const Mesh& mesh) {
+void write_cloud_ply(const std::filesystem::path& file, const SurfaceMesh& mesh) {
   std::string bytes = header(std::string(kPosition) + kColour + "property int object\n", mesh.vertices.size(), 0);
   bytes.reserve(bytes.size() + 19 * mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

@@ -216,6 +216,18 @@ TEST(GroupedRayIntegrator, RefusesAMapOfAnotherVoxelSize) {
   }
 }
 
+TEST(GroupedRayIntegrator, RefusesAPoseBeyondTheMap) {
+  TsdfConfig config;
+  TsdfVolume volume(config);
+  const Intrinsics camera = Intrinsics::from_field_of_view(16, 12, 1.0, 0.8);
+  const LabelledFrame in = view(BoxScene(), camera, look_at({0, -1, 1}, {0, 1, 1}), false);
+  for (const double x : {1e6, -1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    Pose X_WC = Pose::Identity();
+    X_WC.translation().x() = x;
+    EXPECT_THROW(GroupedRayIntegrator(config).integrate(in.frame, camera, in.labels, X_WC, volume), Error);
+  }
+}
+
 TEST(GroupedRayIntegrator, InvalidDepthDoesNothing) {
   const Intrinsics camera = Intrinsics::from_field_of_view(32, 24, 1.0, 0.8);
   RgbdFrame frame;

@@ -14,8 +14,8 @@ namespace waretwin {
 namespace {
 
 // Two triangles of object 5 and one of the background.
-Mesh small_mesh() {
-  Mesh mesh;
+SurfaceMesh small_mesh() {
+  SurfaceMesh mesh;
   for (int i = 0; i < 7; ++i) {
     mesh.vertices.emplace_back(static_cast<float>(i), 0.25f * static_cast<float>(i * i), -0.5f * static_cast<float>(i));
     mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
@@ -47,7 +47,7 @@ T take(const std::string& bytes, std::size_t& at) {
 
 TEST(MapFiles, PlyHoldsMeshBitForBit) {
   const test::TemporaryFolder folder;
-  const Mesh mesh = small_mesh();
+  const SurfaceMesh mesh = small_mesh();
   write_ply(folder.path() / "map.ply", mesh);
   const std::string bytes = read_file(folder.path() / "map.ply");
   std::size_t at = bytes.find("end_header\n") + 11;
@@ -68,7 +68,7 @@ TEST(MapFiles, PlyHoldsMeshBitForBit) {
 
 TEST(MapFiles, CloudCarriesObjectIds) {
   const test::TemporaryFolder folder;
-  const Mesh mesh = small_mesh();
+  const SurfaceMesh mesh = small_mesh();
   write_cloud_ply(folder.path() / "cloud.ply", mesh);
   const std::string bytes = read_file(folder.path() / "cloud.ply");
   std::size_t at = bytes.find("end_header\n") + 11;
@@ -97,7 +97,7 @@ TEST(MapFiles, ObjectsGetAFileEachAndOldOnesGo) {
 TEST(MapFiles, GlbHasANodePerObject) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "map.glb";
-  const Mesh mesh = small_mesh();
+  const SurfaceMesh mesh = small_mesh();
   write_map_glb(file, mesh, {object(5, "conveyor"), object(6, "chair")});
   tinygltf::Model model;
   tinygltf::TinyGLTF reader;
@@ -137,7 +137,7 @@ TEST(MapFiles, GlbHasANodePerObject) {
 
 TEST(MapFiles, GlbOfAnEmptyMapIsReadable) {
   const test::TemporaryFolder folder;
-  write_map_glb(folder.path() / "map.glb", Mesh(), {});
+  write_map_glb(folder.path() / "map.glb", SurfaceMesh(), {});
   tinygltf::Model model;
   tinygltf::TinyGLTF reader;
   std::string error, warning;
