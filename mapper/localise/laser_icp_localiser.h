@@ -13,7 +13,8 @@ namespace waretwin {
 // Every scan is matched against a keyframe scan. A scan is measured while the vehicle moves: its points are first brought to the
 // instant at its middle, by odometry (or by the last scans' velocity where there is none), and that instant is what a match gives the
 // pose of. Other instants (a frame's stamp, a scan's own stamp) are reached from there by odometry.
-// The vehicle moves in the plane of the start pose. One laser is used: the first by name; scans of others are ignored.
+// The vehicle moves in the plane of the start pose, and stands still at the first event (one odometry reading tells no velocity). One laser
+// is used: the first by name; scans of others are ignored.
 class LaserIcpLocaliser : public Localiser {
  public:
   // Throws Error where the stream names no laser.

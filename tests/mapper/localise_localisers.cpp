@@ -14,9 +14,11 @@ namespace {
 constexpr Stamp kMs = 1'000'000;
 constexpr double kLap = 48.0;  // seconds
 
-// Out along the hall and back in another lane: an ellipse of 8 x 1.6 m about (6, 3), heading along it; sharp turns at the ends.
+// Out along the hall and back in another lane: an ellipse of 8 x 1.6 m about (6, 3), heading along it; sharp turns at the ends. It starts
+// from rest,
+// as the first scan has only one odometry reading before it.
 PlanarMotion true_pose(double t) {
-  const double phase = 2 * std::numbers::pi * t / kLap;
+  const double phase = 2 * std::numbers::pi * (t + std::exp(-t) - 1.0) / kLap;
   return {{6.0 - 4.0 * std::cos(phase), 3.2 - 0.8 * std::sin(phase)}, std::atan2(-0.8 * std::cos(phase), 4.0 * std::sin(phase))};
 }
 
