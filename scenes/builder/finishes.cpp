@@ -195,63 +195,210 @@ const std::map<std::string, Recipe>& recipes() {
       {"hazard_tape", hazard_tape},
       {"yellow_tape", yellow_tape},
       {"wall_paint", wall_paint},
-      {"wall_grey", [] { return painted("wall grey", {176, 174, 170}, 0.85, 0.6, 6); }},
-      {"ceiling", [] { return plain({0.93, 0.93, 0.92}, 0, 0.95, 0.7); }},
-      {"skirting", [] { return plain({0.36, 0.37, 0.39}, 0, 0.7, 0.4); }},
-      {"duct", [] { return plain({0.80, 0.81, 0.82}, 0, 0.6, 0.65); }},
-      {"lamp", [] { return glowing({1.0, 0.98, 0.94}); }},
-      {"daylight", [] { return glowing({0.72, 0.86, 1.0}); }},
-      {"window_frame", [] { return plain({0.85, 0.86, 0.87}, 0.2, 0.5, 0.6); }},
-      {"door_paint", [] { return painted("door", {150, 120, 82}, 0.6, 0.45, 12); }},
-      {"gate", [] { return painted("gate", {196, 196, 192}, 0.6, 0.6, 40); }},
+      {"wall_grey",
+       [] {
+         return painted("wall grey", {176, 174, 170}, 0.85, 0.6, 6);
+       }},
+      {"ceiling",
+       [] {
+         return plain({0.93, 0.93, 0.92}, 0, 0.95, 0.7);
+       }},
+      {"skirting",
+       [] {
+         return plain({0.36, 0.37, 0.39}, 0, 0.7, 0.4);
+       }},
+      {"duct",
+       [] {
+         return plain({0.80, 0.81, 0.82}, 0, 0.6, 0.65);
+       }},
+      {"lamp",
+       [] {
+         return glowing({1.0, 0.98, 0.94});
+       }},
+      {"daylight",
+       [] {
+         return glowing({0.72, 0.86, 1.0});
+       }},
+      {"window_frame",
+       [] {
+         return plain({0.85, 0.86, 0.87}, 0.2, 0.5, 0.6);
+       }},
+      {"door_paint",
+       [] {
+         return painted("door", {150, 120, 82}, 0.6, 0.45, 12);
+       }},
+      {"gate",
+       [] {
+         return painted("gate", {196, 196, 192}, 0.6, 0.6, 40);
+       }},
       // Metal and paint
-      {"green_paint", [] { return painted("green", {54, 190, 72}, 0.45, 0.6, 30); }},
-      {"cabinet_grey", [] { return painted("cabinet", {74, 70, 66}, 0.55, 0.35, 30); }},
-      {"cabinet_top", [] { return painted("cabinet top", {96, 93, 90}, 0.6, 0.4, 90); }},
-      {"light_grey_paint", [] { return painted("light grey", {206, 206, 203}, 0.5, 0.65, 12); }},
-      {"black_paint", [] { return painted("black", {34, 34, 35}, 0.5, 0.15, 12); }},
-      {"blue_paint", [] { return painted("blue", {150, 82, 30}, 0.5, 0.4, 25); }},
-      {"orange_paint", [] { return painted("orange", {28, 102, 226}, 0.5, 0.6, 25); }},
-      {"yellow_paint", [] { return painted("yellow", {24, 184, 238}, 0.5, 0.6, 30); }},
-      {"red_paint", [] { return painted("red", {36, 34, 190}, 0.5, 0.45, 15); }},
+      {"green_paint",
+       [] {
+         return painted("green", {54, 190, 72}, 0.45, 0.6, 30);
+       }},
+      {"cabinet_grey",
+       [] {
+         return painted("cabinet", {74, 70, 66}, 0.55, 0.35, 30);
+       }},
+      {"cabinet_top",
+       [] {
+         return painted("cabinet top", {96, 93, 90}, 0.6, 0.4, 90);
+       }},
+      {"light_grey_paint",
+       [] {
+         return painted("light grey", {206, 206, 203}, 0.5, 0.65, 12);
+       }},
+      {"black_paint",
+       [] {
+         return painted("black", {34, 34, 35}, 0.5, 0.15, 12);
+       }},
+      {"blue_paint",
+       [] {
+         return painted("blue", {150, 82, 30}, 0.5, 0.4, 25);
+       }},
+      {"orange_paint",
+       [] {
+         return painted("orange", {28, 102, 226}, 0.5, 0.6, 25);
+       }},
+      {"yellow_paint",
+       [] {
+         return painted("yellow", {24, 184, 238}, 0.5, 0.6, 30);
+       }},
+      {"red_paint",
+       [] {
+         return painted("red", {36, 34, 190}, 0.5, 0.45, 15);
+       }},
       {"aluminium", brushed_aluminium},
-      {"steel", [] { return plain({0.62, 0.62, 0.63}, 0.7, 0.4, 0.5); }},
-      {"dark_steel", [] { return plain({0.30, 0.30, 0.31}, 0.5, 0.5, 0.3); }},
-      {"chrome", [] { return plain({0.80, 0.80, 0.81}, 0.9, 0.2, 0.5); }},
-      {"galvanised", [] { return painted("galvanised", {182, 180, 176}, 0.5, 0.55, 20); }},
+      {"steel",
+       [] {
+         return plain({0.62, 0.62, 0.63}, 0.7, 0.4, 0.5);
+       }},
+      {"dark_steel",
+       [] {
+         return plain({0.30, 0.30, 0.31}, 0.5, 0.5, 0.3);
+       }},
+      {"chrome",
+       [] {
+         return plain({0.80, 0.80, 0.81}, 0.9, 0.2, 0.5);
+       }},
+      {"galvanised",
+       [] {
+         return painted("galvanised", {182, 180, 176}, 0.5, 0.55, 20);
+       }},
       {"mesh_fence", mesh_fence},
       // Rubber, plastic
       {"rubber_belt", rubber_belt},
-      {"roller_black", [] { return painted("roller", {44, 43, 43}, 0.55, 0.16, 30); }},
-      {"roller_steel", [] { return plain({0.70, 0.70, 0.70}, 0.6, 0.35, 0.5); }},
-      {"rubber", [] { return plain({0.09, 0.09, 0.09}, 0, 0.9, 0.12); }},
-      {"black_plastic", [] { return plain({0.11, 0.11, 0.12}, 0, 0.5, 0.15); }},
-      {"grey_plastic", [] { return plain({0.50, 0.51, 0.52}, 0, 0.6, 0.45); }},
-      {"white_plastic", [] { return plain({0.88, 0.88, 0.87}, 0, 0.5, 0.75); }},
-      {"bin_green", [] { return plain({0.16, 0.50, 0.22}, 0, 0.5, 0.5); }},
-      {"bin_blue", [] { return plain({0.12, 0.28, 0.60}, 0, 0.5, 0.45); }},
-      {"bin_red", [] { return plain({0.70, 0.12, 0.11}, 0, 0.5, 0.5); }},
-      {"joint_blue", [] { return plain({0.52, 0.76, 0.88}, 0, 0.45, 0.6); }},
-      {"robot_grey", [] { return plain({0.78, 0.79, 0.80}, 0.2, 0.45, 0.6); }},
-      {"cable_black", [] { return plain({0.07, 0.07, 0.07}, 0, 0.6, 0.1); }},
-      {"cable_blue", [] { return plain({0.10, 0.25, 0.62}, 0, 0.6, 0.3); }},
-      {"cable_yellow", [] { return plain({0.88, 0.74, 0.10}, 0, 0.6, 0.5); }},
-      {"cable_grey", [] { return plain({0.55, 0.55, 0.55}, 0, 0.6, 0.4); }},
-      {"esd_mat", [] { return painted("mat", {148, 120, 92}, 0.9, 0.4, 20); }},
-      {"stretch_film", [] { return plain({0.82, 0.86, 0.88}, 0.1, 0.2, 0.5); }},
+      {"roller_black",
+       [] {
+         return painted("roller", {44, 43, 43}, 0.55, 0.16, 30);
+       }},
+      {"roller_steel",
+       [] {
+         return plain({0.70, 0.70, 0.70}, 0.6, 0.35, 0.5);
+       }},
+      {"rubber",
+       [] {
+         return plain({0.09, 0.09, 0.09}, 0, 0.9, 0.12);
+       }},
+      {"black_plastic",
+       [] {
+         return plain({0.11, 0.11, 0.12}, 0, 0.5, 0.15);
+       }},
+      {"grey_plastic",
+       [] {
+         return plain({0.50, 0.51, 0.52}, 0, 0.6, 0.45);
+       }},
+      {"white_plastic",
+       [] {
+         return plain({0.88, 0.88, 0.87}, 0, 0.5, 0.75);
+       }},
+      {"bin_green",
+       [] {
+         return plain({0.16, 0.50, 0.22}, 0, 0.5, 0.5);
+       }},
+      {"bin_blue",
+       [] {
+         return plain({0.12, 0.28, 0.60}, 0, 0.5, 0.45);
+       }},
+      {"bin_red",
+       [] {
+         return plain({0.70, 0.12, 0.11}, 0, 0.5, 0.5);
+       }},
+      {"joint_blue",
+       [] {
+         return plain({0.52, 0.76, 0.88}, 0, 0.45, 0.6);
+       }},
+      {"robot_grey",
+       [] {
+         return plain({0.78, 0.79, 0.80}, 0.2, 0.45, 0.6);
+       }},
+      {"cable_black",
+       [] {
+         return plain({0.07, 0.07, 0.07}, 0, 0.6, 0.1);
+       }},
+      {"cable_blue",
+       [] {
+         return plain({0.10, 0.25, 0.62}, 0, 0.6, 0.3);
+       }},
+      {"cable_yellow",
+       [] {
+         return plain({0.88, 0.74, 0.10}, 0, 0.6, 0.5);
+       }},
+      {"cable_grey",
+       [] {
+         return plain({0.55, 0.55, 0.55}, 0, 0.6, 0.4);
+       }},
+      {"esd_mat",
+       [] {
+         return painted("mat", {148, 120, 92}, 0.9, 0.4, 20);
+       }},
+      {"stretch_film",
+       [] {
+         return plain({0.82, 0.86, 0.88}, 0.1, 0.2, 0.5);
+       }},
       // Wood, board, cloth
-      {"birch", [] { return wood("birch", {150, 192, 218}, 9); }},
-      {"beech", [] { return wood("beech", {110, 158, 196}, 12); }},
-      {"pallet_wood", [] { return wood("pallet", {112, 156, 184}, 20); }},
+      {"birch",
+       [] {
+         return wood("birch", {150, 192, 218}, 9);
+       }},
+      {"beech",
+       [] {
+         return wood("beech", {110, 158, 196}, 12);
+       }},
+      {"pallet_wood",
+       [] {
+         return wood("pallet", {112, 156, 184}, 20);
+       }},
       {"chipboard", chipboard},
-      {"table_top", [] { return painted("table top", {208, 210, 208}, 0.5, 0.7, 30); }},
+      {"table_top",
+       [] {
+         return painted("table top", {208, 210, 208}, 0.5, 0.7, 30);
+       }},
       {"cardboard", cardboard},
-      {"packing_tape", [] { return plain({0.62, 0.46, 0.26}, 0, 0.3, 0.5); }},
-      {"fabric_black", [] { return fabric("fabric black", {42, 40, 40}); }},
-      {"fabric_blue", [] { return fabric("fabric blue", {112, 66, 36}); }},
-      {"paper", [] { return plain({0.93, 0.93, 0.91}, 0, 0.9, 0.8); }},
-      {"leaf", [] { return plain({0.14, 0.36, 0.12}, 0, 0.7, 0.6); }},
-      {"soil", [] { return plain({0.16, 0.11, 0.08}, 0, 0.95, 0.3); }},
+      {"packing_tape",
+       [] {
+         return plain({0.62, 0.46, 0.26}, 0, 0.3, 0.5);
+       }},
+      {"fabric_black",
+       [] {
+         return fabric("fabric black", {42, 40, 40});
+       }},
+      {"fabric_blue",
+       [] {
+         return fabric("fabric blue", {112, 66, 36});
+       }},
+      {"paper",
+       [] {
+         return plain({0.93, 0.93, 0.91}, 0, 0.9, 0.8);
+       }},
+      {"leaf",
+       [] {
+         return plain({0.14, 0.36, 0.12}, 0, 0.7, 0.6);
+       }},
+      {"soil",
+       [] {
+         return plain({0.16, 0.11, 0.08}, 0, 0.95, 0.3);
+       }},
       // Pictures
       {"screen_status", [] { return screen(draw_status_screen()); }},
       {"screen_code", [] { return screen(draw_code_screen()); }},

@@ -17,9 +17,9 @@ struct Finish {
   std::string name;
   Eigen::Vector3d colour = {1, 1, 1};  // multiplies the texture
   double metallic = 0.0, roughness = 0.7;
-  Eigen::Vector3d emissive = {0, 0, 0};  // linear
-  cv::Mat texture;                       // 8-bit BGR or BGRA; empty: none
-  bool texture_glows = false;            // the texture is emitted too (screens)
+  Eigen::Vector3d emissive = {0, 0, 0};                  // linear
+  cv::Mat texture;                                       // 8-bit BGR or BGRA; empty: none
+  bool texture_glows = false;                            // the texture is emitted too (screens)
   double texture_width_m = 1.0, texture_height_m = 1.0;  // what one repeat covers; 1 x 1 also for pictures
   bool picture = false;                                  // stored without loss (PNG) and not repeated: labels, signs, screens
   bool alpha_mask = false;                               // the texture's alpha cuts

@@ -24,7 +24,9 @@ cv::Mat tiling_noise(int width, int height, int cells, int octaves, const std::s
     const RandomStream random(0, key, "noise", octave);
     std::vector<double> grid(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
     for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = random.uniform(i);
-    const auto at = [&](int x, int y) { return grid[static_cast<std::size_t>(y % ny) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(x % nx)]; };
+    const auto at = [&](int x, int y) {
+      return grid[static_cast<std::size_t>(y % ny) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(x % nx)];
+    };
     for (int y = 0; y < height; ++y) {
       const double gy = static_cast<double>(y) * ny / height;
       const int iy = static_cast<int>(gy);

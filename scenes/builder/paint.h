@@ -26,7 +26,8 @@ void add_scratches(cv::Mat& picture, int count, double length_px, const cv::Scal
 // Streaks along x (brushed metal, wood): noise stretched by `stretch`.
 void add_streaks(cv::Mat& picture, double amount, int stretch, const std::string& key);
 
-void put_text(cv::Mat& picture, const std::string& text, int x, int baseline_y, double height_px, const cv::Scalar& colour, int thickness = 1);
+void put_text(cv::Mat& picture, const std::string& text, int x, int baseline_y, double height_px, const cv::Scalar& colour,
+              int thickness = 1);
 
 // A made-up linear bar code.
 void draw_barcode(cv::Mat& picture, const cv::Rect& area, const std::string& key);

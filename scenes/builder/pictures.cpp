@@ -26,7 +26,8 @@ void print_lines(Mat& p, const Rect& area, int step, const Scalar& colour, const
 }
 
 void warning_triangle(Mat& p, const Point& centre, int size) {
-  const Point outer[] = {{centre.x, centre.y - size}, {centre.x + size, centre.y + size * 3 / 4}, {centre.x - size, centre.y + size * 3 / 4}};
+  const Point outer[] = {
+      {centre.x, centre.y - size}, {centre.x + size, centre.y + size * 3 / 4}, {centre.x - size, centre.y + size * 3 / 4}};
   cv::fillConvexPoly(p, outer, 3, {20, 20, 20}, cv::LINE_AA);
   const int s = size * 4 / 5;
   const Point inner[] = {{centre.x, centre.y - s}, {centre.x + s, centre.y + s * 3 / 4 - 1}, {centre.x - s, centre.y + s * 3 / 4 - 1}};
@@ -102,7 +103,12 @@ Mat draw_safety_poster() {
   Mat p(420, 297, CV_8UC3, Scalar(238, 240, 240));
   fill(p, {0, 0, 297, 66}, {24, 190, 245});
   put_text(p, "CAUTION", 52, 48, 36, {20, 20, 20}, 5);
-  warning_triangle(p, {148, 152, }, 64);
+  warning_triangle(p,
+                   {
+                       148,
+                       152,
+                   },
+                   64);
   put_text(p, "MOBILE ROBOTS", 40, 240, 22, {30, 30, 30}, 2);
   put_text(p, "IN OPERATION", 54, 274, 22, {30, 30, 30}, 2);
   print_lines(p, {36, 300, 225, 60}, 15, {150, 150, 150}, "safety");

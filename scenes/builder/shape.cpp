@@ -156,8 +156,7 @@ Shape bevelled_box(double dx, double dy, double dz, double bevel) {
   }
   if (b > 0) {
     for (const auto& corner : id) {
-      const Vector3d normal =
-          (s.positions[corner[1]] - s.positions[corner[0]]).cross(s.positions[corner[2]] - s.positions[corner[0]]);
+      const Vector3d normal = (s.positions[corner[1]] - s.positions[corner[0]]).cross(s.positions[corner[2]] - s.positions[corner[0]]);
       const Vector3d mean = s.normals[corner[0]] + s.normals[corner[1]] + s.normals[corner[2]];
       if (normal.dot(mean) >= 0) {
         add_triangle(s, corner[0], corner[1], corner[2]);

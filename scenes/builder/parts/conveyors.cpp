@@ -1,5 +1,6 @@
 #include "scenes/builder/parts/conveyors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -28,8 +29,18 @@ Shape belt_loop(double length, double width, double top, double thickness) {
 Profile slotted_profile(double width, double height) {
   const double w = width / 2, s = 0.008, d = 0.007;
   const double low = 0.28 * height, high = 0.72 * height;
-  return {{-w, 0},          {w, 0},           {w, low - s / 2},      {w - d, low - s / 2},  {w - d, low + s / 2}, {w, low + s / 2},
-          {w, high - s / 2}, {w - d, high - s / 2}, {w - d, high + s / 2}, {w, high + s / 2}, {w, height},         {-w, height}};
+  return {{-w, 0},
+          {w, 0},
+          {w, low - s / 2},
+          {w - d, low - s / 2},
+          {w - d, low + s / 2},
+          {w, low + s / 2},
+          {w, high - s / 2},
+          {w - d, high - s / 2},
+          {w - d, high + s / 2},
+          {w, high + s / 2},
+          {w, height},
+          {-w, height}};
 }
 
 Shape bolt(const Vector3d& at, const Vector3d& out, double radius) { return cylinder(at, at + out * 0.0045, radius, 6); }
@@ -44,9 +55,9 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
     const double inset = 0.005;  // bolts stay inside the rail's outline
     // The base rail: two green beams along, joined by two cross beams and a floor plate.
     for (const double side : {-1.0, 1.0}) {
+      draft.add(kit.material("green_paint"), standing_box(c.length, 0.075, rail_height, 0.004).move(0, side * (c.width / 2 - 0.0375), 0));
       draft.add(kit.material("green_paint"),
-                standing_box(c.length, 0.075, rail_height, 0.004).move(0, side * (c.width / 2 - 0.0375), 0));
-      draft.add(kit.material("green_paint"), standing_box(0.06, c.width - 0.15, rail_height - 0.006).move(side * (c.length / 2 - 0.05), 0, 0));
+                standing_box(0.06, c.width - 0.15, rail_height - 0.006).move(side * (c.length / 2 - 0.05), 0, 0));
       // Side profile, slots outside.
       Shape profile = extruded(slotted_profile(profile_width, profile_height), c.length - 0.012);
       if (side < 0) profile.rotate(Vector3d::UnitZ(), 180);
@@ -54,11 +65,12 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
       const int bolts = static_cast<int>(std::lround(c.length / 0.075));
       for (int i = 0; i < bolts; ++i) {
         const double x = (i + 0.5 - bolts / 2.0) * (c.length - 0.05) / bolts;
-        draft.add(kit.material("dark_steel"), bolt({x, side * (c.width / 2 - inset), rail_height + profile_height / 2}, {0, side, 0}, 0.0065));
+        draft.add(kit.material("dark_steel"),
+                  bolt({x, side * (c.width / 2 - inset), rail_height + profile_height / 2}, {0, side, 0}, 0.0065));
       }
       // End plates.
-      draft.add(kit.material("black_plastic"),
-                standing_box(0.006, c.width - 2 * inset - 2 * profile_width, profile_height * 0.55).move(side * (c.length / 2 - 0.02), 0, rail_height));
+      draft.add(kit.material("black_plastic"), standing_box(0.006, c.width - 2 * inset - 2 * profile_width, profile_height * 0.55)
+                                                   .move(side * (c.length / 2 - 0.02), 0, rail_height));
     }
     draft.add(kit.material("dark_steel"), standing_box(c.length - 0.08, c.width - 0.10, 0.012).move(0, 0, rail_height - 0.008));
     const double between = c.width - 2 * (inset + profile_width) - 0.006;
@@ -69,7 +81,8 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
         const double x = (i - (count - 1) / 2.0) * (c.length - 2 * r - 0.004) / (count - 1);
         draft.add(kit.material("roller_black"), cylinder({x, -between / 2, c.height - r}, {x, between / 2, c.height - r}, r, 20));
         for (const double side : {-1.0, 1.0}) {
-          draft.add(kit.material("steel"), cylinder({x, side * between / 2, c.height - r}, {x, side * (between / 2 + 0.006), c.height - r}, 0.007, 8));
+          draft.add(kit.material("steel"),
+                    cylinder({x, side * between / 2, c.height - r}, {x, side * (between / 2 + 0.006), c.height - r}, 0.007, 8));
         }
       }
     } else {
@@ -97,8 +110,8 @@ int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorCon
       const int bolts = std::max(2, static_cast<int>(c.length / 0.2));
       for (int i = 0; i < bolts; ++i) {
         const double x = (i + 0.5) / bolts * c.length - c.length / 2;
-        draft.add(kit.material("dark_steel"),
-                  cylinder({x, side * (c.width / 2 - 0.001), rail_top - 0.05}, {x, side * (c.width / 2 + 0.004), rail_top - 0.05}, 0.008, 6));
+        draft.add(kit.material("dark_steel"), cylinder({x, side * (c.width / 2 - 0.001), rail_top - 0.05},
+                                                       {x, side * (c.width / 2 + 0.004), rail_top - 0.05}, 0.008, 6));
       }
     }
     if (!c.rollers) draft.add(kit.material("rubber_belt"), belt_loop(c.length - 0.01, inner - 0.02, c.height, 0.09));
@@ -145,13 +158,15 @@ int add_curve_conveyor(Kit& kit, int parent, const Placement& at, const CurveCon
     const int paint = kit.material(c.belt ? "blue_paint" : "green_paint");
     draft.add(paint, ring(inside, inside + frame_width, rail_top - frame_height, rail_top));
     draft.add(paint, ring(outside - frame_width, outside, rail_top - frame_height, rail_top));
-    if (c.belt) draft.add(kit.material("rubber_belt"), ring(inside + frame_width + 0.01, outside - frame_width - 0.01, c.height - 0.05, c.height));
+    if (c.belt)
+      draft.add(kit.material("rubber_belt"), ring(inside + frame_width + 0.01, outside - frame_width - 0.01, c.height - 0.05, c.height));
     for (const double share : {0.08, 0.5, 0.92}) {
       const double a = to_radians(c.degrees * share);
       const Vector3d out(std::cos(a), std::sin(a), 0);
       for (const double r : {inside + 0.05, outside - 0.05}) {
-        draft.add(kit.material("galvanised"),
-                  standing_box(0.04, 0.05, rail_top - 0.10).rotate(Vector3d::UnitZ(), c.degrees * share).move(r * out.x(), r * out.y(), 0.01));
+        draft.add(
+            kit.material("galvanised"),
+            standing_box(0.04, 0.05, rail_top - 0.10).rotate(Vector3d::UnitZ(), c.degrees * share).move(r * out.x(), r * out.y(), 0.01));
         draft.add(kit.material("rubber"),
                   standing_box(0.07, 0.08, 0.012).rotate(Vector3d::UnitZ(), c.degrees * share).move(r * out.x(), r * out.y(), 0));
       }

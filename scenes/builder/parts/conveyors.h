@@ -28,7 +28,8 @@ struct FloorConveyor {
 };
 int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorConveyor& c);
 
-// A curve about the placement's origin, from angle 0 (the x axis) to `degrees`, its centre line at `radius`. Tapered look, straight rollers.
+// A curve about the placement's origin, from angle 0 (the x axis) to `degrees`, its centre line at `radius`. Tapered look, straight
+// rollers.
 struct CurveConveyor {
   std::string name = "conveyor_curve";
   double radius = 1.0, width = 0.60, height = 0.75, degrees = 90.0;

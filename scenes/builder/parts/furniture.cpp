@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/pose.h"
+#include "core/random.h"
 
 namespace waretwin::builder {
 namespace {
@@ -21,7 +22,8 @@ int add_cabinet(Kit& kit, int parent, const Placement& at, const Cabinet& c) {
     for (const double x : {-1.0, 1.0}) {
       for (const double y : {-1.0, 1.0}) {
         draft.add(kit.material("aluminium"), leg(x * (c.width / 2 - 0.018), y * (c.depth / 2 - 0.018), foot, c.height - top, 0.036));
-        draft.add(kit.material("rubber"), cylinder({x * (c.width / 2 - 0.06), y * (c.depth / 2 - 0.06), 0}, {x * (c.width / 2 - 0.06), y * (c.depth / 2 - 0.06), foot}, 0.025, 10));
+        draft.add(kit.material("rubber"), cylinder({x * (c.width / 2 - 0.06), y * (c.depth / 2 - 0.06), 0},
+                                                   {x * (c.width / 2 - 0.06), y * (c.depth / 2 - 0.06), foot}, 0.025, 10));
       }
     }
     const double front = -c.depth / 2 + 0.004;
@@ -37,21 +39,25 @@ int add_cabinet(Kit& kit, int parent, const Placement& at, const Cabinet& c) {
         draft.add(kit.material("aluminium"), bevelled_box(0.014, 0.018, 0.14, 0.003).move(x + hx, front - 0.014, z + h - 0.14));
       }
     }
-    draft.add(kit.material("label_warning"), picture({-c.width / 4 - 0.04, front - 0.0085, foot + body - 0.17}, {0.08, 0, 0}, {0, 0, 0.08}));
+    draft.add(kit.material("label_warning"),
+              picture({-c.width / 4 - 0.04, front - 0.0085, foot + body - 0.17}, {0.08, 0, 0}, {0, 0, 0.08}));
   });
 }
 
 int add_table(Kit& kit, int parent, const Placement& at, const Table& t) {
-  return kit.place("table", parent, at, "table_" + in_mm({t.width, t.depth, t.height}) + t.top + (t.shelf ? "_shelf" : ""), [&](MeshDraft& draft) {
-    draft.add(kit.material(t.top), standing_box(t.width, t.depth, 0.03, 0.003).move(0, 0, t.height - 0.03));
-    const int frame = kit.material("aluminium");
-    for (const double x : {-1.0, 1.0}) {
-      for (const double y : {-1.0, 1.0}) draft.add(frame, leg(x * (t.width / 2 - 0.05), y * (t.depth / 2 - 0.05), 0, t.height - 0.03, 0.045));
-      draft.add(frame, standing_box(0.03, t.depth - 0.14, 0.05).move(x * (t.width / 2 - 0.05), 0, t.height - 0.08));
-    }
-    for (const double y : {-1.0, 1.0}) draft.add(frame, standing_box(t.width - 0.14, 0.03, 0.05).move(0, y * (t.depth / 2 - 0.05), t.height - 0.08));
-    if (t.shelf) draft.add(kit.material("chipboard"), standing_box(t.width - 0.1, t.depth - 0.1, 0.02).move(0, 0, 0.18));
-  });
+  return kit.place("table", parent, at, "table_" + in_mm({t.width, t.depth, t.height}) + t.top + (t.shelf ? "_shelf" : ""),
+                   [&](MeshDraft& draft) {
+                     draft.add(kit.material(t.top), standing_box(t.width, t.depth, 0.03, 0.003).move(0, 0, t.height - 0.03));
+                     const int frame = kit.material("aluminium");
+                     for (const double x : {-1.0, 1.0}) {
+                       for (const double y : {-1.0, 1.0})
+                         draft.add(frame, leg(x * (t.width / 2 - 0.05), y * (t.depth / 2 - 0.05), 0, t.height - 0.03, 0.045));
+                       draft.add(frame, standing_box(0.03, t.depth - 0.14, 0.05).move(x * (t.width / 2 - 0.05), 0, t.height - 0.08));
+                     }
+                     for (const double y : {-1.0, 1.0})
+                       draft.add(frame, standing_box(t.width - 0.14, 0.03, 0.05).move(0, y * (t.depth / 2 - 0.05), t.height - 0.08));
+                     if (t.shelf) draft.add(kit.material("chipboard"), standing_box(t.width - 0.1, t.depth - 0.1, 0.02).move(0, 0, 0.18));
+                   });
 }
 
 int add_robot_arm(Kit& kit, int parent, const Placement& at, const RobotArm& arm) {
@@ -103,8 +109,11 @@ int add_robot_arm(Kit& kit, int parent, const Placement& at, const RobotArm& arm
     }
     // The cable along the upper arm.
     draft.add(kit.material("cable_black"),
-              turn(tube(smooth_path({shoulder + Vector3d(-0.06, 0.03, -0.09), shoulder + Vector3d(-0.09, -0.02, 0.06), shoulder + offset + u * 0.18 + Vector3d(-0.06, 0, 0),
-                                     elbow + Vector3d(-0.05, 0, 0.02), start + f * 0.14 + Vector3d(0, 0.02, 0.05)}, 4), 0.007, 6)));
+              turn(tube(smooth_path({shoulder + Vector3d(-0.06, 0.03, -0.09), shoulder + Vector3d(-0.09, -0.02, 0.06),
+                                     shoulder + offset + u * 0.18 + Vector3d(-0.06, 0, 0), elbow + Vector3d(-0.05, 0, 0.02),
+                                     start + f * 0.14 + Vector3d(0, 0.02, 0.05)},
+                                    4),
+                        0.007, 6)));
   });
 }
 
@@ -121,13 +130,16 @@ int add_bin(Kit& kit, int parent, const Placement& at, double length, double wid
       draft.add(m, bevelled_box(0.01, width * 0.6, 0.012, 0.003).move(side * (length / 2 + 0.003), width * 0.12, height - 0.008));
     }
     draft.add(m, bevelled_box(length + 0.008, 0.012, 0.014, 0.003).move(0, width / 2, height - 0.007));
-    draft.add(kit.material("paper"), rectangle({-length * 0.22, -width / 2 - 0.0006, height * 0.14}, {length * 0.44, 0, 0}, {0, 0, height * 0.26}));
+    draft.add(kit.material("paper"),
+              rectangle({-length * 0.22, -width / 2 - 0.0006, height * 0.14}, {length * 0.44, 0, 0}, {0, 0, height * 0.26}));
     if (filled) {
       const RandomStream random(0, "bin", "content");
       for (std::uint64_t i = 0; i < 7; ++i) {
         const double x = (random.uniform(i, 0) - 0.5) * length * 0.6, y = (random.uniform(i, 1) - 0.5) * width * 0.6;
-        const double r = 0.012 + 0.012 * random.uniform(i, 2), tilt = 6.28 * random.uniform(i, 3), z = t + r + 0.012 * static_cast<double>(i % 3);
-        draft.add(kit.material(i % 2 == 0 ? "steel" : "dark_steel"), cylinder({x, y, z}, {x + 0.05 * std::cos(tilt), y + 0.05 * std::sin(tilt), z}, r, 8));
+        const double r = 0.012 + 0.012 * random.uniform(i, 2), tilt = 6.28 * random.uniform(i, 3),
+                     z = t + r + 0.012 * static_cast<double>(i % 3);
+        draft.add(kit.material(i % 2 == 0 ? "steel" : "dark_steel"),
+                  cylinder({x, y, z}, {x + 0.05 * std::cos(tilt), y + 0.05 * std::sin(tilt), z}, r, 8));
       }
     }
   });
@@ -195,7 +207,8 @@ int add_stool(Kit& kit, int parent, const Placement& at) {
   return kit.place("stool", parent, at, "stool", [&](MeshDraft& draft) {
     draft.add(kit.material("fabric_black"), turned({{0, 0.55}, {0.16, 0.55}, {0.17, 0.57}, {0.165, 0.61}, {0, 0.62}}, 20));
     draft.add(kit.material("chrome"), cylinder({0, 0, 0.1}, {0, 0, 0.55}, 0.022, 10));
-    for (int i = 0; i < 5; ++i) draft.add(kit.material("chrome"), bevelled_box(0.24, 0.03, 0.03, 0.006).move(0.13, 0, 0.07).rotate(Vector3d::UnitZ(), 72 * i));
+    for (int i = 0; i < 5; ++i)
+      draft.add(kit.material("chrome"), bevelled_box(0.24, 0.03, 0.03, 0.006).move(0.13, 0, 0.07).rotate(Vector3d::UnitZ(), 72 * i));
     for (int i = 0; i < 5; ++i) {
       const Vector3d w = Eigen::AngleAxisd(to_radians(72 * i), Vector3d::UnitZ()) * Vector3d(0.24, 0, 0.03);
       draft.add(kit.material("rubber"), cylinder(w - Vector3d(0, 0, 0.03), w + Vector3d(0, 0, 0.025), 0.022, 10));
@@ -207,13 +220,17 @@ int add_leaning_panel(Kit& kit, int parent, const Placement& at, double width, d
                       const std::string& finish) {
   return kit.place("panel", parent, at, "panel_" + finish + in_mm({width, height, thickness, lean_deg}), [&](MeshDraft& draft) {
     // Turned about its lower back edge, so that it rests on the floor.
-    draft.add(kit.material(finish), standing_box(width, thickness, height, 0.001).move(0, -thickness / 2, 0).rotate(Vector3d::UnitX(), -lean_deg)
+    draft.add(kit.material(finish), standing_box(width, thickness, height, 0.001)
+                                        .move(0, -thickness / 2, 0)
+                                        .rotate(Vector3d::UnitX(), -lean_deg)
                                         .move(0, 0, thickness * std::sin(to_radians(lean_deg))));
   });
 }
 
-int add_cable(Kit& kit, int parent, const std::string& name, const std::vector<Vector3d>& points, double radius, const std::string& finish) {
-  return kit.place(name, parent, {}, name, [&](MeshDraft& draft) { draft.add(kit.material(finish), tube(smooth_path(points, 6), radius, 6)); });
+int add_cable(Kit& kit, int parent, const std::string& name, const std::vector<Vector3d>& points, double radius,
+              const std::string& finish) {
+  return kit.place(name, parent, {}, name,
+                   [&](MeshDraft& draft) { draft.add(kit.material(finish), tube(smooth_path(points, 6), radius, 6)); });
 }
 
 int add_tools(Kit& kit, int parent, const Placement& at) {
@@ -238,7 +255,8 @@ int add_toolbox(Kit& kit, int parent, const Placement& at) {
   return kit.place("toolbox", parent, at, "toolbox", [&](MeshDraft& draft) {
     draft.add(kit.material("red_paint"), standing_box(0.44, 0.22, 0.17, 0.008));
     draft.add(kit.material("black_plastic"), standing_box(0.45, 0.23, 0.05, 0.01).move(0, 0, 0.165));
-    draft.add(kit.material("black_plastic"), tube(smooth_path({{-0.1, 0, 0.21}, {-0.09, 0, 0.25}, {0.09, 0, 0.25}, {0.1, 0, 0.21}}, 4), 0.011, 8));
+    draft.add(kit.material("black_plastic"),
+              tube(smooth_path({{-0.1, 0, 0.21}, {-0.09, 0, 0.25}, {0.09, 0, 0.25}, {0.1, 0, 0.21}}, 4), 0.011, 8));
     for (const double x : {-0.13, 0.13}) draft.add(kit.material("chrome"), bevelled_box(0.04, 0.012, 0.05, 0.003).move(x, -0.115, 0.15));
   });
 }
@@ -246,7 +264,8 @@ int add_toolbox(Kit& kit, int parent, const Placement& at) {
 int add_cup(Kit& kit, int parent, const Placement& at) {
   return kit.place("cup", parent, at, "cup", [&](MeshDraft& draft) {
     draft.add(kit.material("white_plastic"), turned({{0, 0}, {0.034, 0}, {0.040, 0.09}, {0.036, 0.09}, {0.031, 0.006}, {0, 0.006}}, 16));
-    draft.add(kit.material("white_plastic"), tube(smooth_path({{0.038, 0, 0.075}, {0.065, 0, 0.06}, {0.06, 0, 0.03}, {0.036, 0, 0.02}}, 4), 0.005, 6));
+    draft.add(kit.material("white_plastic"),
+              tube(smooth_path({{0.038, 0, 0.075}, {0.065, 0, 0.06}, {0.06, 0, 0.03}, {0.036, 0, 0.02}}, 4), 0.005, 6));
   });
 }
 
@@ -257,7 +276,8 @@ int add_book_stack(Kit& kit, int parent, const Placement& at) {
     for (int i = 0; i < 4; ++i) {
       const double h = 0.022 + 0.006 * (i % 2), w = 0.30 - 0.02 * i;
       draft.add(kit.material(colours[i]), standing_box(w, 0.215, h, 0.002).rotate(Vector3d::UnitZ(), 7.0 * (i % 3) - 6).move(0, 0, z));
-      draft.add(kit.material("paper"), standing_box(w - 0.01, 0.219, h - 0.008).rotate(Vector3d::UnitZ(), 7.0 * (i % 3) - 6).move(0, 0, z + 0.004));
+      draft.add(kit.material("paper"),
+                standing_box(w - 0.01, 0.219, h - 0.008).rotate(Vector3d::UnitZ(), 7.0 * (i % 3) - 6).move(0, 0, z + 0.004));
       z += h;
     }
   });
@@ -301,7 +321,8 @@ int add_shelf(Kit& kit, int parent, const Placement& at, double width, double he
     for (const double x : {-1.0, 1.0}) {
       for (const double y : {-1.0, 1.0}) draft.add(kit.material("galvanised"), leg(x * (width / 2 - 0.02), y * 0.18, 0, height, 0.035));
     }
-    for (int i = 0; i < 4; ++i) draft.add(kit.material("galvanised"), standing_box(width, 0.4, 0.03).move(0, 0, 0.12 + i * (height - 0.2) / 3));
+    for (int i = 0; i < 4; ++i)
+      draft.add(kit.material("galvanised"), standing_box(width, 0.4, 0.03).move(0, 0, 0.12 + i * (height - 0.2) / 3));
   });
   const RandomStream random(0, "shelf", "content");
   const char* finishes[] = {"bin_green", "bin_blue", "bin_green", "bin_red"};
@@ -352,7 +373,8 @@ int add_signal_tower(Kit& kit, int parent, const Placement& at) {
   return kit.place("signal_tower", parent, at, "signal_tower", [&](MeshDraft& draft) {
     draft.add(kit.material("grey_plastic"), turned({{0, 0}, {0.03, 0}, {0.03, 0.015}, {0.009, 0.02}, {0.009, 0.28}, {0, 0.28}}, 12));
     const char* colours[] = {"bin_green", "yellow_paint", "bin_red"};
-    for (int i = 0; i < 3; ++i) draft.add(kit.material(colours[i]), cylinder({0, 0, 0.28 + 0.055 * i}, {0, 0, 0.33 + 0.055 * i}, 0.027, 14));
+    for (int i = 0; i < 3; ++i)
+      draft.add(kit.material(colours[i]), cylinder({0, 0, 0.28 + 0.055 * i}, {0, 0, 0.33 + 0.055 * i}, 0.027, 14));
     draft.add(kit.material("black_plastic"), cylinder({0, 0, 0.445}, {0, 0, 0.46}, 0.027, 14));
   });
 }

@@ -53,7 +53,8 @@ int add_ceiling(Kit& kit, int parent, double length, double width, double height
   });
 }
 
-void add_floor_tape(Kit& kit, int parent, const std::string& name, const std::vector<Vector2d>& path, double width, const std::string& finish) {
+void add_floor_tape(Kit& kit, int parent, const std::string& name, const std::vector<Vector2d>& path, double width,
+                    const std::string& finish) {
   kit.place(name, parent, {}, name, [&](MeshDraft& draft) {
     for (std::size_t i = 0; i + 1 < path.size(); ++i) {
       const Vector2d along = (path[i + 1] - path[i]).normalized(), left(-along.y(), along.x());
@@ -96,8 +97,13 @@ void add_ceiling_lamp(Kit& kit, int parent, const Placement& at, double intensit
   });
   // A little below the panel, so that the panel does not shade its own light.
   kit.model.add_lamp(node, Placement{0, 0, -0.06}.pose(),
-                     {.name = "lamp_light", .spot = true, .intensity_cd = intensity_cd, .colour = {1.0, 0.97, 0.92}, .radius_m = 0.25,
-                      .inner_cone_deg = 45, .outer_cone_deg = 85});
+                     {.name = "lamp_light",
+                      .spot = true,
+                      .intensity_cd = intensity_cd,
+                      .colour = {1.0, 0.97, 0.92},
+                      .radius_m = 0.25,
+                      .inner_cone_deg = 45,
+                      .outer_cone_deg = 85});
 }
 
 void add_window(Kit& kit, int parent, const Placement& at, double width, double height) {
@@ -105,7 +111,8 @@ void add_window(Kit& kit, int parent, const Placement& at, double width, double 
     const double f = 0.06, depth = 0.12;
     draft.add(kit.material("daylight"), rectangle({width / 2, -depth, 0}, {-width, 0, 0}, {0, 0, height}));
     const int frame = kit.material("window_frame");
-    for (const double x : {-width / 2 + f / 2, 0.0, width / 2 - f / 2}) draft.add(frame, standing_box(f, 0.07, height).move(x, -depth + 0.04, 0));
+    for (const double x : {-width / 2 + f / 2, 0.0, width / 2 - f / 2})
+      draft.add(frame, standing_box(f, 0.07, height).move(x, -depth + 0.04, 0));
     for (const double z : {0.0, height - f}) draft.add(frame, standing_box(width, 0.07, f).move(0, -depth + 0.04, z));
     // Reveal and sill.
     const int reveal = kit.material("ceiling");
@@ -183,10 +190,12 @@ void add_switch_box(Kit& kit, int parent, const Placement& at) {
 
 void add_fire_extinguisher(Kit& kit, int parent, const Placement& at) {
   kit.place("fire_extinguisher", parent, at, "fire_extinguisher", [&](MeshDraft& draft) {
-    draft.add(kit.material("red_paint"),
-              turned({{0, 0}, {0.075, 0}, {0.08, 0.02}, {0.08, 0.42}, {0.06, 0.47}, {0.025, 0.5}, {0.025, 0.53}, {0, 0.53}}, 18).move(0, 0.1, 0));
+    draft.add(
+        kit.material("red_paint"),
+        turned({{0, 0}, {0.075, 0}, {0.08, 0.02}, {0.08, 0.42}, {0.06, 0.47}, {0.025, 0.5}, {0.025, 0.53}, {0, 0.53}}, 18).move(0, 0.1, 0));
     draft.add(kit.material("black_plastic"), standing_box(0.03, 0.12, 0.04, 0.004).move(0, 0.13, 0.53));
-    draft.add(kit.material("rubber"), tube(smooth_path({{0, 0.14, 0.54}, {0.09, 0.14, 0.5}, {0.1, 0.14, 0.3}, {0.09, 0.13, 0.12}}, 5), 0.011, 8));
+    draft.add(kit.material("rubber"),
+              tube(smooth_path({{0, 0.14, 0.54}, {0.09, 0.14, 0.5}, {0.1, 0.14, 0.3}, {0.09, 0.13, 0.12}}, 5), 0.011, 8));
     draft.add(kit.material("steel"), standing_box(0.05, 0.02, 0.3).move(0, 0.01, 0.15));
   });
 }

@@ -25,7 +25,8 @@ int add_floor(Kit& kit, int parent, double length, double width);  // centred on
 int add_ceiling(Kit& kit, int parent, double length, double width, double height);
 
 // A strip of tape on the floor along a polyline (metres), `width` wide.
-void add_floor_tape(Kit& kit, int parent, const std::string& name, const std::vector<Vector2d>& path, double width, const std::string& finish);
+void add_floor_tape(Kit& kit, int parent, const std::string& name, const std::vector<Vector2d>& path, double width,
+                    const std::string& finish);
 // A track of tyre rubber.
 void add_tyre_marks(Kit& kit, int parent, const std::vector<Vector2d>& path);
 

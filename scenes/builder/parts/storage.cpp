@@ -1,5 +1,6 @@
 #include "scenes/builder/parts/storage.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.h"
@@ -91,8 +92,10 @@ int add_rack(Kit& kit, int parent, const Placement& at, const Rack& rack) {
     draft.add(kit.material("yellow_paint"), standing_box(0.14, 0.05, 0.4).move(0, -depth / 2 - 0.07, 0));
   });
   const int beam = kit.mesh("rack_beam", [&](MeshDraft& draft) {
-    for (const double y : {-depth / 2, depth / 2}) draft.add(kit.material("orange_paint"), standing_box(bay - post, 0.05, 0.12).move(0, y, -0.12));
-    for (const double x : {-0.9, -0.3, 0.3, 0.9}) draft.add(kit.material("galvanised"), standing_box(0.10, depth - 0.05, 0.03).move(x, 0, -0.032));
+    for (const double y : {-depth / 2, depth / 2})
+      draft.add(kit.material("orange_paint"), standing_box(bay - post, 0.05, 0.12).move(0, y, -0.12));
+    for (const double x : {-0.9, -0.3, 0.3, 0.9})
+      draft.add(kit.material("galvanised"), standing_box(0.10, depth - 0.05, 0.03).move(x, 0, -0.032));
     draft.add(kit.material("label_type"), picture({-0.1, -depth / 2 - 0.026, -0.09}, {0.12, 0, 0}, {0, 0, 0.06}));
   });
   for (int i = 0; i <= rack.bays; ++i) kit.model.add_node("rack_upright", node, Placement{i * bay - (length - post) / 2, 0, 0}, upright);
@@ -131,7 +134,8 @@ int add_post(Kit& kit, int parent, const Placement& at) {
   return kit.place("post", parent, at, "post", [&](MeshDraft& draft) {
     draft.add(kit.material("dark_steel"), standing_box(0.2, 0.2, 0.012));
     for (int i = 0; i < 5; ++i) {
-      draft.add(kit.material(i % 2 == 0 ? "yellow_paint" : "black_paint"), cylinder({0, 0, 0.01 + 0.18 * i}, {0, 0, 0.19 + 0.18 * i}, 0.057, 16, i == 4));
+      draft.add(kit.material(i % 2 == 0 ? "yellow_paint" : "black_paint"),
+                cylinder({0, 0, 0.01 + 0.18 * i}, {0, 0, 0.19 + 0.18 * i}, 0.057, 16, i == 4));
     }
   });
 }
@@ -139,7 +143,8 @@ int add_post(Kit& kit, int parent, const Placement& at) {
 int add_column(Kit& kit, int parent, const Placement& at, double height) {
   return kit.place("column", parent, at, "column_" + in_mm({height}), [&](MeshDraft& draft) {
     const double w = 0.15, t = 0.014;
-    const Profile section = {{-w, -w}, {w, -w}, {w, -w + t}, {t, -w + t}, {t, w - t}, {w, w - t}, {w, w}, {-w, w}, {-w, w - t}, {-t, w - t}, {-t, -w + t}, {-w, -w + t}};
+    const Profile section = {{-w, -w}, {w, -w}, {w, -w + t}, {t, -w + t}, {t, w - t},   {w, w - t},
+                             {w, w},   {-w, w}, {-w, w - t}, {-t, w - t}, {-t, -w + t}, {-w, -w + t}};
     draft.add(kit.material("light_grey_paint"), extruded(section, height).rotate(Vector3d::UnitY(), -90).move(0, 0, height / 2));
     draft.add(kit.material("hazard_tape"), standing_box(0.42, 0.42, 0.5, 0.02));
   });
@@ -148,7 +153,8 @@ int add_column(Kit& kit, int parent, const Placement& at, double height) {
 int add_fence(Kit& kit, int parent, const Placement& at, double length) {
   return kit.place("fence", parent, at, "fence_" + in_mm({length}), [&](MeshDraft& draft) {
     const int panels = std::max(1, static_cast<int>(std::ceil(length / 1.5)));
-    for (int i = 0; i <= panels; ++i) draft.add(kit.material("yellow_paint"), standing_box(0.05, 0.05, 1.8).move((static_cast<double>(i) / panels - 0.5) * length, 0, 0));
+    for (int i = 0; i <= panels; ++i)
+      draft.add(kit.material("yellow_paint"), standing_box(0.05, 0.05, 1.8).move((static_cast<double>(i) / panels - 0.5) * length, 0, 0));
     draft.add(kit.material("mesh_fence"), rectangle({-length / 2, 0, 0.15}, {length, 0, 0}, {0, 0, 1.6}));
     for (const double z : {0.12, 1.74}) draft.add(kit.material("black_paint"), standing_box(length, 0.03, 0.03).move(0, 0, z));
   });
