@@ -10,28 +10,28 @@
 
 namespace waretwin {
 
-// One light as a surface point sees it, were nothing in between.
-struct LitBy {
-  int light = -1;                                      // index into the scene's lights
-  Eigen::Vector3f radiance = Eigen::Vector3f::Zero();  // reflected towards the viewer, linear RGB
+// What each light sends towards the viewer by way of one surface point, were nothing in between; by light. Kept by the caller to save
+// allocations.
+struct LightParts {
+  std::vector<float> diffuse;   // irradiance / pi, for a light of unit intensity
+  std::vector<float> specular;  // irradiance times the glossy lobe without its reflectance, likewise
+  std::vector<float> weight;    // luminance of what is reflected
+  float total = 0.0f;           // sum of weights
 };
 
 class DirectLight {
  public:
-  explicit DirectLight(const std::vector<Light>& lights) : lights_(lights) {}
+  explicit DirectLight(const std::vector<Light>& lights);
 
-  // Irradiance of one light on a surface whose shading normal is given, nothing in between: intensity over squared distance
-  // (KHR_lights_punctual, range window included) times the cosine. l becomes the unit direction to the light. Zero where the light is
-  // behind the surface.
-  Eigen::Vector3f irradiance(int light, const SurfacePoint& point, Eigen::Vector3f& l) const;
+  // Radiance that a point reflects towards v (unit) from all lights, unshadowed: intensity over squared distance with the range window and
+  // cones of KHR_lights_punctual, times the cosine, times glTF's reflection (diffuse / pi + D V F, V F approximated as in Karis,
+  // "Physically based shading on mobile"). Nearer than its own radius a light no longer gains.
+  Eigen::Vector3f unshadowed(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v, LightParts& parts) const;
+  // One light's share of that sum.
+  Eigen::Vector3f radiance(int light, const Reflection& reflection, const LightParts& parts) const;
 
-  // Sum over all lights of what the point reflects towards v (unit) unshadowed. Writes each contributing light to `parts`
-  // (cleared first; kept by the caller to save allocations).
-  Eigen::Vector3f unshadowed(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v,
-                             std::vector<LitBy>& parts) const;
-
-  // Picks a part with probability proportional to its luminance; `pick` in [0, 1). `total` is the sum of luminances. -1 where all is dark.
-  static int choose(const std::vector<LitBy>& parts, float pick, float& total);
+  // Picks a light with probability weight / total; `pick` in [0, 1). -1 where all is dark.
+  static int choose(const LightParts& parts, float pick);
 
   // From the point to a place on the light's emitter, a disc that faces the point; s and t in [0, 1) choose the place. Directional lights
   // have no size. Any hit on the ray is a shadow.
@@ -39,6 +39,8 @@ class DirectLight {
 
  private:
   const std::vector<Light>& lights_;
+  // The lights again, one array a value, for the loop that runs for every pixel. A directional light is the point (-direction, w = 0).
+  std::vector<float> x_, y_, z_, w_, radius2_, inverse_range2_, dx_, dy_, dz_, cone_scale_, cone_offset_, luminance_;
 };
 
 // Where rays that leave a surface start: a little above it, so that they don't meet it again.

@@ -28,7 +28,7 @@ Eigen::Vector3f glossy_direction(const Eigen::Vector3f& n, const Eigen::Vector3f
 
 }  // namespace
 
-Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom& random, std::vector<LitBy>& parts) const {
+Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom& random, LightParts& parts) const {
   const Scene& scene = ray_caster_.scene();
   Eigen::Vector3f sum = Eigen::Vector3f::Zero(), throughput = Eigen::Vector3f::Ones();
   Ray ray = first;
@@ -43,14 +43,11 @@ Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom
     sum += throughput.cwiseProduct(point.emissive);
 
     lights_.unshadowed(point, reflection, v, parts);
-    float total = 0.0f;
     const float pick = random.uniform(), s = random.uniform(), t = random.uniform();
-    const int chosen = DirectLight::choose(parts, pick, total);
-    if (chosen >= 0) {
-      const LitBy& part = parts[static_cast<std::size_t>(chosen)];
-      if (!ray_caster_.occluded(lights_.shadow_ray(part.light, point, s, t))) {
-        sum += throughput.cwiseProduct(part.radiance) * (total / luminance(part.radiance));
-      }
+    const int light = DirectLight::choose(parts, pick);
+    if (light >= 0 && !ray_caster_.occluded(lights_.shadow_ray(light, point, s, t))) {
+      const float chance = parts.weight[static_cast<std::size_t>(light)] / parts.total;
+      sum += throughput.cwiseProduct(lights_.radiance(light, reflection, parts)) / chance;
     }
     if (depth == bounces_) return sum;
 

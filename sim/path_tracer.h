@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
-#include <vector>
 
 #include "sim/direct_light.h"
 #include "sim/pixel_random.h"
@@ -19,8 +17,8 @@ class PathTracer {
       : ray_caster_(ray_caster), surfaces_(surfaces), lights_(lights), bounces_(bounces) {}
 
   // One sample of the radiance that arrives along a ray. A ray that leaves the scene at once sees the background, later the ambient light.
-  // Energy is kept: a white surface returns what it receives.
-  Eigen::Vector3f radiance(const Ray& ray, float spread, PixelRandom& random, std::vector<LitBy>& parts) const;
+  // A white dielectric returns all that it receives; rough metal lacks what it would scatter twice.
+  Eigen::Vector3f radiance(const Ray& ray, float spread, PixelRandom& random, LightParts& parts) const;
 
  private:
   const RayCaster& ray_caster_;

@@ -18,10 +18,7 @@ struct Reflection {
 
 Reflection reflection_of(const SurfacePoint& point, float n_dot_v);
 
-// Reflected radiance per unit of irradiance (n_dot_l included in the latter): diffuse / pi + D * V * F, with the approximate visibility
-// term of Karis, so that lights stay cheap. l and v are unit vectors away from the surface.
-Eigen::Vector3f reflected(const Reflection& reflection, const Eigen::Vector3f& normal, const Eigen::Vector3f& l, const Eigen::Vector3f& v);
-
-float luminance(const Eigen::Vector3f& rgb);  // Rec. 709
+// Rec. 709.
+inline float luminance(const Eigen::Vector3f& rgb) { return 0.2126f * rgb.x() + 0.7152f * rgb.y() + 0.0722f * rgb.z(); }
 
 }  // namespace waretwin

@@ -95,7 +95,7 @@ struct Renderer::State {
   void cast_primary(const PixelRays& pixel_rays);
   void write_geometry(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, FrameImages& images) const;
   void shade(const PixelRays& pixel_rays, std::uint32_t seed);
-  void shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, std::vector<LitBy>& parts);
+  void shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, LightParts& parts);
   void find_openness(std::uint32_t seed);
   void compose(cv::Mat& colour) const;
   void trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const;
@@ -178,7 +178,7 @@ void Renderer::State::shade(const PixelRays& pixel_rays, std::uint32_t seed) {
   half_normals.resize(half_guide.depth.size());
   const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
   parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<LitBy> parts;
+    LightParts parts;
     for (int top = static_cast<int>(begin) * kTileHeight; top < static_cast<int>(end) * kTileHeight; top += kTileHeight) {
       for (int left = 0; left < width; left += kTileWidth) shade_tile(pixel_rays, seed, left, top, parts);
     }
@@ -186,7 +186,7 @@ void Renderer::State::shade(const PixelRays& pixel_rays, std::uint32_t seed) {
   if (options.shadows) smooth(guide, kShadowRadius, visible, scratch);
 }
 
-void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, std::vector<LitBy>& parts) {
+void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, LightParts& parts) {
   const Scene& scene = ray_caster->scene();
   const int blocks_per_row = (width + 3) / 4;
   struct Shadow {
@@ -235,12 +235,9 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
       half_positions[h] = lifted(point);
       half_normals[h] = point.face_normal;
     }
-    if (!options.shadows || parts.empty()) continue;
+    if (!options.shadows || !(parts.total > 0.0f)) continue;
     const BlockSample sample = block_sample(seed, x, y, blocks_per_row, 0);
-    float total = 0.0f;
-    const int chosen = DirectLight::choose(parts, sample.a, total);
-    if (chosen < 0) continue;
-    const int light = parts[static_cast<std::size_t>(chosen)].light;
+    const int light = DirectLight::choose(parts, sample.a);
     shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
   }
   if (count == 0) return;
@@ -321,7 +318,7 @@ void Renderer::State::trace_paths(const PixelRays& pixel_rays, std::uint32_t see
   const PathTracer tracer(*ray_caster, surfaces, lights, options.bounces);
   const auto exposure = static_cast<float>(options.exposure);
   parallel_for(static_cast<std::size_t>(height), 2, [&](std::size_t begin, std::size_t end) {
-    std::vector<LitBy> parts;
+    LightParts parts;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       auto* out = colour.ptr<cv::Vec3b>(y);
       for (int x = 0; x < width; ++x) {

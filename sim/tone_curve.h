@@ -7,7 +7,7 @@
 namespace waretwin {
 
 // A filmic curve, exposure included: the fit to ACES by K. Narkowicz, "ACES filmic tone mapping curve" (2015), then the sRGB curve.
-// Monotonic; 0 -> 0, all from about 8 up -> 255. NaN -> 0.
+// Monotonic; 0 -> 0, all from about 12 up -> 255. NaN -> 0.
 std::uint8_t tone_mapped(float radiance);
 
 }  // namespace waretwin

@@ -14,7 +14,7 @@ namespace waretwin {
 
 namespace {
 
-// A depth camera reads nothing from surfaces seen at a flatter angle than this (85 deg from the normal).
+// Cosine of the angle between the line of sight and the normal beyond which a depth camera reads nothing (85 deg).
 constexpr float kFacing = 0.0871557f;
 // Rays end this much before the point they aim at, so that its own surface doesn't hide it.
 constexpr float kShort = 0.002f;

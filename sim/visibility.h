@@ -15,10 +15,11 @@ namespace waretwin {
 class RayCaster;
 
 // The share of an object's viewable surface that the depth of the frames saw. The surface is sampled by area, the same points in every
-// run. A point is viewable when from at least one free place a camera at its own height sees it: nearer than the depth range's end in a
-// straight line, from the front, with nothing in between. A place is free when the robot can stand there: inside the hall's bounds, with
-// nothing above the floor and below the robot's height within its half diagonal. A point is seen in a frame when it projects into the image
-// and the depth field, within the depth range, from the front, with nothing in between.
+// run. A point is viewable when from at least one free place a camera at its own height sees it: no farther than the depth range in a
+// straight line, at no flatter angle than 5 deg, with nothing in between. A place is free when the robot can stand there: inside the
+// hall's bounds, with nothing between 3 cm above the floor and the robot's height within half its diagonal (searched with rays, so a thin
+// post may be missed). A point is seen in a frame when it is viewable and projects into the image and the depth field, within the depth
+// range, at no flatter angle than 5 deg, with nothing in between.
 class SurfaceCoverage {
  public:
   // Cameras by sensor name. Throws Error when there are none.

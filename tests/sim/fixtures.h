@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/scene.h"
@@ -14,7 +16,7 @@ namespace waretwin::fixtures {
 
 inline int add_material(Scene& scene, const Eigen::Vector3f& colour, float roughness = 1.0f, float metallic = 0.0f) {
   Material material;
-  material.base_colour << colour, 1.0f;
+  material.base_colour = {colour.x(), colour.y(), colour.z(), 1.0f};
   material.roughness = roughness;
   material.metallic = metallic;
   scene.materials.push_back(material);
@@ -89,7 +91,11 @@ inline int add_instance(Scene& scene, int mesh, const Eigen::Affine3f& X_WM = Ei
 }
 
 inline Eigen::Affine3f placed(const Eigen::Vector3f& low, const Eigen::Vector3f& size, float yaw = 0.0f) {
-  return Eigen::Translation3f(low) * Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitZ()) * Eigen::Scaling(size);
+  Eigen::Affine3f X_WM = Eigen::Affine3f::Identity();
+  X_WM.linear() = Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  for (int axis = 0; axis < 3; ++axis) X_WM.linear().col(axis) *= size[axis];
+  X_WM.translation() = low;
+  return X_WM;
 }
 
 // Index of a new object; its cuboid is the instance's box where that is upright.
