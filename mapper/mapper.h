@@ -1,4 +1,4 @@
-// The mapper: a sensor stream in, an object map out. The top function is the paper's Fig. 1 on one screen.
+// The mapper: a sensor stream in, an object map out. Mapper::map_frame is the paper's Fig. 1 on one screen.
 #pragma once
 
 #include <functional>
@@ -8,25 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "mapper/associate/associator.h"
-#include "mapper/detect/detector.h"
-#include "mapper/integrate/integrator.h"
-#include "mapper/localise/localiser.h"
 #include "mapper/mapper_config.h"
 #include "mapper/object_list.h"
-#include "mapper/segment/segmenter.h"
+#include "mapper/stages.h"
 #include "sensors/sensor_stream.h"
 
 namespace waretwin {
-
-// The five stages. Each is an interface with several makers; the harness may put the truth in place of any.
-struct Stages {
-  std::unique_ptr<Localiser> localiser;
-  std::unique_ptr<Detector> detector;
-  std::unique_ptr<Segmenter> segmenter;
-  std::unique_ptr<Associator> associator;
-  std::unique_ptr<Integrator> integrator;
-};
 
 struct TrajectoryPoint {
   Stamp stamp = 0;
@@ -42,7 +29,9 @@ struct FrameReport {
   double frame_ms() const { return localise_ms + detect_ms + segment_ms + associate_ms + integrate_ms; }
 };
 
+// The map's world W is z up. A recording whose own world R is not (7-Scenes) is turned on the way in; X_RW turns results back.
 struct ObjectMap {
+  Pose X_RW = Pose::Identity();  // a pure rotation; identity where the recording's world is z up
   ObjectList objects;
   std::unique_ptr<TsdfVolume> volume;
   std::vector<TrajectoryPoint> trajectory;  // one point a scan
@@ -58,8 +47,10 @@ class Mapper {
   Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info);
   ~Mapper();
 
-  void consume(const SensorEvent& event);
+  // Takes the next event; stamps must not go back (Error). Frames beyond the mapping rate are dropped and counted.
+  void consume(SensorEvent event);
   const ObjectMap& map() const { return map_; }
+  // Hands over the map; the mapper is then empty.
   ObjectMap finish();
 
   // Called after each mapped frame with its detections and what became of them (debug pictures, per-frame records).
@@ -73,18 +64,20 @@ class Mapper {
   std::function<void(const FrameResult&)> on_frame;
 
  private:
-  void localise(const OdometryReading& reading);
-  void localise(const LaserScan& scan);
-  void map_frame(const RgbdFrame& frame);
-  bool due(const RgbdFrame& frame);
+  void take(const OdometryReading& reading);
+  void take(const LaserScan& scan);
+  void take(RgbdFrame frame);
+  bool due(Stamp stamp);
+  void map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport report);
 
   MapperConfig config_;
   Stages stages_;
   StreamInfo info_;
   ObjectMap map_;
   double pending_localise_ms_ = 0.0;
+  Pose X_WR_ = Pose::Identity();
   std::optional<Stamp> first_frame_;
-  std::optional<std::int64_t> last_slot_;
+  std::optional<std::int64_t> last_slot_;  // of the mapping rate
 };
 
 }  // namespace waretwin

@@ -1,13 +1,33 @@
-// Every constant of the mapper, in one tree. Defaults of profile `paper` come from the paper's text; `best` changes what it improves.
+// Every constant of the mapper, in one tree. Profile `paper` is the published method, constants included; `best` is ours.
 #pragma once
 
 #include <string>
 
 #include "core/fields.h"
+#include "mapper/associate/associate_config.h"
+#include "mapper/detect/detect_config.h"
+#include "mapper/integrate/tsdf_config.h"
+#include "mapper/localise/laser_icp_config.h"
+#include "mapper/segment/segment_config.h"
 
 namespace waretwin {
 
 struct MapperConfig {
+  std::string profile = "best";
+  double rate_hz = 0.0;             // frames mapped a second, those in between are dropped; 0 = every frame
+  std::string poses = "auto";       // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
+  std::string detector = "none";    // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
+  std::string model;                // folder, .cfg, .weights or .onnx file
+  std::string boxes;                // JSON file with boxes by frame stamp
+  LaserIcpConfig localise;
+  DetectConfig detect;
+  SegmentConfig segment;
+  AssociateConfig associate;
+  TsdfConfig integrate;
+
+  // The constants of a profile: paper or best. Throws Error naming the known ones.
+  static MapperConfig make(const std::string& profile);
+  // A `profile` that changes sets all other fields before those that follow it.
   void visit(Fields& f);
 };
 

@@ -1,0 +1,138 @@
+#include "mapper/mapper.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "mapper/integrate/tsdf_volume.h"
+
+namespace waretwin {
+
+namespace {
+
+class Stopwatch {
+ public:
+  // Milliseconds since the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+// Turns a recording's own world R into the map's W, whose z points up: the smallest rotation that does it.
+Pose world_from_recording(const StreamInfo& info) {
+  Pose X_WR = Pose::Identity();
+  X_WR.linear() = Eigen::Quaterniond::FromTwoVectors(info.up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return X_WR;
+}
+
+// Labels the pixels of each object with its map id. Where boxes overlap, the earlier object keeps the pixel.
+std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const std::vector<int>& map_ids, std::size_t pixel_count) {
+  std::vector<std::int32_t> labels;
+  for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
+    if (map_ids[i] == 0) continue;
+    if (labels.empty()) labels.assign(pixel_count, 0);
+    for (const int pixel : segmentation.objects[i].pixels) {
+      std::int32_t& label = labels[static_cast<std::size_t>(pixel)];
+      if (label == 0) label = map_ids[i];
+    }
+  }
+  return labels;
+}
+
+}  // namespace
+
+Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info) : config_(config), stages_(std::move(stages)), info_(info) {
+  X_WR_ = world_from_recording(info);
+  map_.X_RW = X_WR_.inverse();
+  map_.volume = std::make_unique<TsdfVolume>(config.integrate.voxel_m);
+}
+
+Mapper::~Mapper() = default;
+
+void Mapper::consume(SensorEvent event) {
+  std::visit([this](auto& measurement) { take(std::move(measurement)); }, event);
+}
+
+ObjectMap Mapper::finish() { return std::exchange(map_, ObjectMap{}); }
+
+void Mapper::take(const OdometryReading& reading) {
+  Stopwatch watch;
+  stages_.localiser->add(reading);
+  pending_localise_ms_ += watch.lap();
+}
+
+void Mapper::take(const LaserScan& scan) {
+  Stopwatch watch;
+  stages_.localiser->add(scan);
+  if (const auto X_WB = stages_.localiser->current_pose()) map_.trajectory.push_back({scan.stamp, *X_WB});
+  pending_localise_ms_ += watch.lap();
+}
+
+bool Mapper::due(Stamp stamp) {
+  if (config_.rate_hz <= 0.0) return true;
+  if (!first_frame_) first_frame_ = stamp;
+  // A frame that misses its slot by rounding of stamps still belongs to it.
+  constexpr double kSlack = 1e-3;
+  const auto slot = static_cast<std::int64_t>(std::floor(to_seconds(stamp - *first_frame_) * config_.rate_hz + kSlack));
+  if (last_slot_ && slot <= *last_slot_) return false;
+  last_slot_ = slot;
+  return true;
+}
+
+void Mapper::take(RgbdFrame frame) {
+  ++map_.frames_seen;
+  if (!due(frame.stamp)) {
+    ++map_.frames_dropped_by_rate;
+    return;
+  }
+  if (frame.recorded_X_WC) frame.recorded_X_WC = X_WR_ * *frame.recorded_X_WC;
+
+  FrameReport report;
+  report.stamp = frame.stamp;
+  report.frame_id = static_cast<int>(map_.frames.size());
+  Stopwatch watch;
+  const std::optional<Pose> X_WB = stages_.localiser->pose_at(frame);
+  // Localising goes on between frames: a frame answers for all scans since the one before.
+  report.localise_ms = std::exchange(pending_localise_ms_, 0.0) + watch.lap();
+  if (!X_WB) {
+    ++map_.frames_without_pose;
+    return;
+  }
+  if (info_.lasers.empty()) map_.trajectory.push_back({frame.stamp, *X_WB});
+  load_pictures(frame);
+  map_frame(frame, *X_WB * info_.cameras.at(frame.sensor).X_BC, report);
+}
+
+void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport report) {
+  const Intrinsics& intrinsics = info_.cameras.at(frame.sensor).intrinsics;
+  Stopwatch watch;
+
+  const std::vector<Detection> detections = stages_.detector->detect(frame);
+  report.detect_ms = watch.lap();
+
+  const Segmentation segmentation = stages_.segmenter->segment(frame, intrinsics, detections, X_WC);
+  report.segment_ms = watch.lap();
+
+  const AssociationContext context = {.frame_id = report.frame_id, .stamp = frame.stamp, .X_WC = X_WC, .intrinsics = intrinsics};
+  const std::vector<int> map_ids = stages_.associator->associate(segmentation.objects, context, map_.objects);
+  for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
+  report.associate_ms = watch.lap();
+
+  stages_.integrator->integrate(frame, intrinsics, label_pixels(segmentation, map_ids, frame.depth.total()), X_WC, *map_.volume);
+  report.integrate_ms = watch.lap();
+
+  report.detections = static_cast<int>(detections.size());
+  report.segmented = static_cast<int>(segmentation.objects.size());
+  for (const auto& [reason, count] : segmentation.rejected) map_.rejected[reason] += count;
+  map_.frames.push_back(report);
+  if (on_frame) on_frame({frame, X_WC, detections, segmentation, map_ids});
+}
+
+}  // namespace waretwin

@@ -1,0 +1,40 @@
+#include "mapper/mapper_config.h"
+
+#include "core/error.h"
+
+namespace waretwin {
+
+MapperConfig MapperConfig::make(const std::string& profile) {
+  MapperConfig config;
+  config.profile = profile;
+  if (profile == "paper") {
+    config.rate_hz = 1.0;  // section 4.3: the paper's laptop kept up with one frame a second
+    return config;
+  }
+  if (profile == "best") {
+    // An object that comes back into view is the one that was there before, and its box is where its cuboid now appears.
+    config.associate.iou2d_mode = "projected";
+    config.associate.max_frame_gap = 0;
+    return config;
+  }
+  throw Error("profile '" + profile + "' is not known; expected paper or best");
+}
+
+void MapperConfig::visit(Fields& f) {
+  const std::string before = profile;
+  f("profile", profile, "the method whose constants the other keys start from", {.choices = {"paper", "best"}});
+  if (profile != before) *this = make(profile);
+  f("rate_hz", rate_hz, "frames mapped a second, those in between are dropped; 0 = every frame", {.min = 0, .max = 1000});
+  f("poses", poses, "where the vehicle's poses come from; auto: laser, else recorded, else odometry",
+    {.choices = {"auto", "laser", "odometry", "recorded"}});
+  f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere", {.choices = {"yolo", "boxes", "none"}});
+  f("model", model, "detector: a folder, a .cfg, .weights or .onnx file");
+  f("boxes", boxes, "JSON file with boxes by frame stamp");
+  f.group("localise", localise, "laser localisation");
+  f.group("detect", detect, "the detector's network");
+  f.group("segment", segment, "from boxes to object points and cuboids");
+  f.group("associate", associate, "which mapped object a segmented one is");
+  f.group("integrate", integrate, "the labelled TSDF volume");
+}
+
+}  // namespace waretwin

@@ -1,0 +1,28 @@
+// The five stages of the pipeline. Each is an interface with several makers; the harness may put the truth in place of any.
+#pragma once
+
+#include <memory>
+
+#include "mapper/associate/associator.h"
+#include "mapper/detect/detector.h"
+#include "mapper/integrate/integrator.h"
+#include "mapper/localise/localiser.h"
+#include "mapper/mapper_config.h"
+#include "mapper/segment/segmenter.h"
+#include "sensors/sensor_stream.h"
+
+namespace waretwin {
+
+struct Stages {
+  std::unique_ptr<Localiser> localiser;
+  std::unique_ptr<Detector> detector;
+  std::unique_ptr<Segmenter> segmenter;
+  std::unique_ptr<Associator> associator;
+  std::unique_ptr<Integrator> integrator;
+};
+
+// The stages that a configuration names. Throws Error where a model file is missing or the stream lacks what a stage needs (laser poses
+// without scans).
+Stages make_stages(const MapperConfig& config, const StreamInfo& info);
+
+}  // namespace waretwin
