@@ -57,6 +57,12 @@ Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info
 Mapper::~Mapper() = default;
 
 void Mapper::consume(SensorEvent event) {
+  const Stamp stamp = stamp_of(event);
+  if (last_stamp_ && stamp < *last_stamp_) {
+    throw Error(info_.source + ": an event at " + std::to_string(stamp) + " ns comes after one at " + std::to_string(*last_stamp_) +
+                " ns; expected events in order of time");
+  }
+  last_stamp_ = stamp;
   std::visit([this](auto& measurement) { take(std::move(measurement)); }, event);
 }
 
@@ -92,6 +98,8 @@ void Mapper::take(RgbdFrame frame) {
     ++map_.frames_dropped_by_rate;
     return;
   }
+  const auto camera = info_.cameras.find(frame.sensor);
+  if (camera == info_.cameras.end()) throw Error(info_.source + ": a frame of camera '" + frame.sensor + "', which the stream does not name");
   if (frame.recorded_X_WC) frame.recorded_X_WC = X_WR_ * *frame.recorded_X_WC;
 
   FrameReport report;
@@ -107,7 +115,7 @@ void Mapper::take(RgbdFrame frame) {
   }
   if (info_.lasers.empty()) map_.trajectory.push_back({frame.stamp, *X_WB});
   load_pictures(frame);
-  map_frame(frame, *X_WB * info_.cameras.at(frame.sensor).X_BC, report);
+  map_frame(frame, *X_WB * camera->second.X_BC, report);
 }
 
 void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport report) {

@@ -47,7 +47,7 @@ class Mapper {
   Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info);
   ~Mapper();
 
-  // Takes the next event; stamps must not go back (Error). Frames beyond the mapping rate are dropped and counted.
+  // Takes the next event. Throws Error where stamps go back or a frame's camera is not in the stream's info. Frames beyond the mapping rate are dropped and counted.
   void consume(SensorEvent event);
   const ObjectMap& map() const { return map_; }
   // Hands over the map; the mapper is then empty.
@@ -76,6 +76,7 @@ class Mapper {
   ObjectMap map_;
   double pending_localise_ms_ = 0.0;
   Pose X_WR_ = Pose::Identity();
+  std::optional<Stamp> last_stamp_;
   std::optional<Stamp> first_frame_;
   std::optional<std::int64_t> last_slot_;  // of the mapping rate
 };

@@ -1,0 +1,1 @@
+set(MAPPER_PIPELINE_SOURCES mapper.cpp mapper_config.cpp stages.cpp)

@@ -1,0 +1,1 @@
+set(MAPPER_PIPELINE_TESTS mapper_test.cpp mapper_config_test.cpp)
