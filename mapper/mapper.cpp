@@ -51,7 +51,7 @@ std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const s
 Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info) : config_(config), stages_(std::move(stages)), info_(info) {
   X_WR_ = world_from_recording(info);
   map_.X_RW = X_WR_.inverse();
-  map_.volume = std::make_unique<TsdfVolume>(config.integrate.voxel_m);
+  map_.volume = std::make_unique<TsdfVolume>(config.integrate);
 }
 
 Mapper::~Mapper() = default;
