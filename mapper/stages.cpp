@@ -1,0 +1,60 @@
+#include "mapper/stages.h"
+
+#include <string>
+
+#include "core/error.h"
+#include "mapper/associate/paper_associator.h"
+#include "mapper/detect/boxes_detector.h"
+#include "mapper/detect/yolo_detector.h"
+#include "mapper/integrate/grouped_ray_integrator.h"
+#include "mapper/localise/laser_icp_localiser.h"
+#include "mapper/localise/simple_localisers.h"
+#include "mapper/segment/paper_segmenter.h"
+
+namespace waretwin {
+
+namespace {
+
+std::string chosen_poses(const MapperConfig& config, const StreamInfo& info) {
+  if (config.poses != "auto") return config.poses;
+  if (!info.lasers.empty()) return "laser";
+  if (info.has_recorded_poses) return "recorded";
+  return "odometry";
+}
+
+std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const StreamInfo& info) {
+  const std::string poses = chosen_poses(config, info);
+  if (poses == "laser") return std::make_unique<LaserIcpLocaliser>(config.localise, info);
+  if (poses == "recorded") {
+    if (!info.has_recorded_poses) throw Error(info.source + ": poses 'recorded' were asked for, but the recording holds none");
+    return std::make_unique<RecordedLocaliser>(info);
+  }
+  if (!info.has_odometry) throw Error(info.source + ": holds neither scans, nor poses, nor odometry; expected one of them for the vehicle's poses");
+  return std::make_unique<OdometryLocaliser>(info);
+}
+
+std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
+  if (config.detector == "yolo") {
+    if (config.model.empty()) throw Error("mapper.model: no detector model; expected a folder, a .cfg, .weights or .onnx file");
+    return std::make_unique<YoloDetector>(config.model, config.detect);
+  }
+  if (config.detector == "boxes") {
+    if (config.boxes.empty()) throw Error("mapper.boxes: no file; expected a JSON file with boxes by frame stamp");
+    return std::make_unique<BoxesDetector>(config.boxes);
+  }
+  return std::make_unique<NoDetector>();
+}
+
+}  // namespace
+
+Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
+  Stages stages;
+  stages.localiser = make_localiser(config, info);
+  stages.detector = make_detector(config);
+  stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
+  stages.associator = std::make_unique<PaperAssociator>(config.associate);
+  stages.integrator = std::make_unique<GroupedRayIntegrator>(config.integrate);
+  return stages;
+}
+
+}  // namespace waretwin
