@@ -1,14 +1,48 @@
 #include "sim/direct_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace waretwin {
 
+namespace {
+
+// Four lights at once, by the compilers' vector extension (GCC and Clang): plain IEEE arithmetic, lane by lane.
+using Four = float __attribute__((vector_size(16)));
+constexpr std::size_t kLanes = 4;
+
+Four all(float value) { return Four{value, value, value, value}; }
+Four load(const float* from) {
+  Four out;
+  std::memcpy(&out, from, sizeof out);
+  return out;
+}
+void store(const Four& value, float* to) { std::memcpy(to, &value, sizeof value); }
+Four larger(const Four& a, const Four& b) { return a > b ? a : b; }
+Four smaller(const Four& a, const Four& b) { return a < b ? a : b; }
+Four root(const Four& x) { return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])}; }
+
+}  // namespace
+
 Eigen::Vector3f lifted(const SurfacePoint& point) {
   const float size = point.position.cwiseAbs().maxCoeff();
   return point.position + (2e-4f + 4e-6f * size) * point.face_normal;
+}
+
+Eigen::Vector2f circle(float turn) {
+  constexpr std::size_t kSteps = 1024;
+  static const auto table = [] {
+    std::array<Eigen::Vector2f, kSteps> points;
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kSteps;
+      points[i] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+    }
+    return points;
+  }();
+  return table[static_cast<std::size_t>(turn * static_cast<float>(kSteps)) % kSteps];
 }
 
 void make_basis(const Eigen::Vector3f& n, Eigen::Vector3f& a, Eigen::Vector3f& b) {
@@ -39,55 +73,58 @@ DirectLight::DirectLight(const std::vector<Light>& lights) : lights_(lights) {
     cone_offset_.push_back(spot ? -outer * scale : 1.0f);
     luminance_.push_back(luminance(light.intensity));
   }
+  // The last group is filled up with dark lights.
+  const std::size_t padded = (lights.size() + kLanes - 1) / kLanes * kLanes;
+  for (auto* values : {&x_, &y_, &z_, &w_, &radius2_, &inverse_range2_, &dx_, &dy_, &dz_, &cone_scale_, &cone_offset_, &luminance_}) {
+    values->resize(padded, 0.0f);
+  }
 }
 
 Eigen::Vector3f DirectLight::unshadowed(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v,
                                         LightParts& parts) const {
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-  const std::size_t count = lights_.size();
+  const std::size_t count = x_.size();
   parts.diffuse.resize(count);
   parts.specular.resize(count);
   parts.weight.resize(count);
-  const float px = point.position.x(), py = point.position.y(), pz = point.position.z();
-  const float nx = point.normal.x(), ny = point.normal.y(), nz = point.normal.z();
-  const float fx = point.face_normal.x(), fy = point.face_normal.y(), fz = point.face_normal.z();
-  const float vx = v.x(), vy = v.y(), vz = v.z();
+  const Eigen::Vector3f &p = point.position, &n = point.normal, &f = point.face_normal;
   const float alpha2 = reflection.roughness * reflection.roughness * reflection.roughness * reflection.roughness;
   const float lobe_scale = alpha2 * kInversePi / (4.0f * (reflection.roughness + 0.5f));
   const float diffuse_luminance = luminance(reflection.diffuse), specular_luminance = luminance(reflection.specular);
-  const float *lx = x_.data(), *ly = y_.data(), *lz = z_.data(), *lw = w_.data(), *r2 = radius2_.data(), *range2 = inverse_range2_.data();
-  const float *ax = dx_.data(), *ay = dy_.data(), *az = dz_.data(), *cone_scale = cone_scale_.data(), *cone_offset = cone_offset_.data();
-  const float* bright = luminance_.data();
-  float* __restrict diffuse = parts.diffuse.data();
-  float* __restrict specular = parts.specular.data();
-  float* __restrict weight = parts.weight.data();
-  // Plain arithmetic without branches, so that the compiler takes several lights at once.
-  for (std::size_t i = 0; i < count; ++i) {
-    const float tx = lx[i] - lw[i] * px, ty = ly[i] - lw[i] * py, tz = lz[i] - lw[i] * pz;
-    const float d2 = std::max(tx * tx + ty * ty + tz * tz, 1e-8f);
-    const float inverse = 1.0f / std::sqrt(d2);
-    const float ux = tx * inverse, uy = ty * inverse, uz = tz * inverse;
-    const float facing = fx * ux + fy * uy + fz * uz;
-    const float cosine = facing > 0.0f ? std::max(nx * ux + ny * uy + nz * uz, 0.0f) : 0.0f;
-    const float ratio = d2 * range2[i];
-    const float window = std::max(1.0f - ratio * ratio, 0.0f);
-    const float cone = std::min(std::max(cone_offset[i] - cone_scale[i] * (ux * ax[i] + uy * ay[i] + uz * az[i]), 0.0f), 1.0f);
-    const float e = cosine / std::max(d2, r2[i]) * window * cone * cone;
-    const float hx = ux + vx, hy = uy + vy, hz = uz + vz;
-    const float inverse_h = 1.0f / std::sqrt(std::max(hx * hx + hy * hy + hz * hz, 1e-12f));
-    const float n_dot_h = std::max((nx * hx + ny * hy + nz * hz) * inverse_h, 0.0f);
-    const float l_dot_h = std::max((ux * hx + uy * hy + uz * hz) * inverse_h, 0.05f);
-    const float d = n_dot_h * n_dot_h * (alpha2 - 1.0f) + 1.0f;
-    diffuse[i] = e * kInversePi;
-    specular[i] = e * lobe_scale / (d * d * l_dot_h * l_dot_h);
-    weight[i] = bright[i] * (diffuse[i] * diffuse_luminance + specular[i] * specular_luminance);
+  Four total = all(0.0f);
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const Four w = load(&w_[i]);
+    const Four tx = load(&x_[i]) - w * p.x(), ty = load(&y_[i]) - w * p.y(), tz = load(&z_[i]) - w * p.z();
+    const Four d2 = larger(tx * tx + ty * ty + tz * tz, all(1e-8f));
+    const Four inverse = 1.0f / root(d2);
+    const Four ux = tx * inverse, uy = ty * inverse, uz = tz * inverse;
+    const Four facing = f.x() * ux + f.y() * uy + f.z() * uz;
+    const Four lambert = larger(n.x() * ux + n.y() * uy + n.z() * uz, all(0.0f));
+    const Four cosine = facing > 0.0f ? lambert : all(0.0f);
+    const Four ratio = d2 * load(&inverse_range2_[i]);
+    const Four window = larger(1.0f - ratio * ratio, all(0.0f));
+    const Four slant = ux * load(&dx_[i]) + uy * load(&dy_[i]) + uz * load(&dz_[i]);
+    const Four cone = smaller(larger(load(&cone_offset_[i]) - load(&cone_scale_[i]) * slant, all(0.0f)), all(1.0f));
+    const Four e = cosine / larger(d2, load(&radius2_[i])) * window * cone * cone;
+    const Four hx = ux + v.x(), hy = uy + v.y(), hz = uz + v.z();
+    const Four inverse_h = 1.0f / root(larger(hx * hx + hy * hy + hz * hz, all(1e-12f)));
+    const Four n_dot_h = larger((n.x() * hx + n.y() * hy + n.z() * hz) * inverse_h, all(0.0f));
+    const Four l_dot_h = larger((ux * hx + uy * hy + uz * hz) * inverse_h, all(0.05f));
+    const Four d = n_dot_h * n_dot_h * (alpha2 - 1.0f) + 1.0f;
+    const Four diffuse = e * kInversePi;
+    const Four specular = e * lobe_scale / (d * d * l_dot_h * l_dot_h);
+    const Four weight = load(&luminance_[i]) * (diffuse * diffuse_luminance + specular * specular_luminance);
+    store(diffuse, &parts.diffuse[i]);
+    store(specular, &parts.specular[i]);
+    store(weight, &parts.weight[i]);
+    total += weight;
   }
-  parts.total = 0.0f;
+  parts.total = (total[0] + total[1]) + (total[2] + total[3]);
   Eigen::Vector3f diffuse_sum = Eigen::Vector3f::Zero(), specular_sum = Eigen::Vector3f::Zero();
-  for (std::size_t i = 0; i < count; ++i) {
-    parts.total += weight[i];
-    diffuse_sum += diffuse[i] * lights_[i].intensity;
-    specular_sum += specular[i] * lights_[i].intensity;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    if (parts.weight[i] == 0.0f) continue;
+    diffuse_sum += parts.diffuse[i] * lights_[i].intensity;
+    specular_sum += parts.specular[i] * lights_[i].intensity;
   }
   return reflection.diffuse.cwiseProduct(diffuse_sum) + reflection.specular.cwiseProduct(specular_sum);
 }
@@ -124,8 +161,9 @@ Ray DirectLight::shadow_ray(int index, const SurfacePoint& point, float s, float
   if (light.radius <= 0.0f || length <= light.radius) return ray;
   Eigen::Vector3f a, b;
   make_basis(ray.direction / length, a, b);
-  const float radius = light.radius * std::sqrt(s), angle = 2.0f * std::numbers::pi_v<float> * t;
-  ray.direction += radius * (std::cos(angle) * a + std::sin(angle) * b);
+  const float radius = light.radius * std::sqrt(s);
+  const Eigen::Vector2f around = circle(t);
+  ray.direction += radius * (around.x() * a + around.y() * b);
   return ray;
 }
 

@@ -10,8 +10,8 @@
 
 namespace waretwin {
 
-// What each light sends towards the viewer by way of one surface point, were nothing in between; by light. Kept by the caller to save
-// allocations.
+// What each light sends towards the viewer by way of one surface point, were nothing in between; by light, then some dark ones. Kept by the
+// caller to save allocations.
 struct LightParts {
   std::vector<float> diffuse;   // irradiance / pi, for a light of unit intensity
   std::vector<float> specular;  // irradiance times the glossy lobe without its reflectance, likewise
@@ -22,6 +22,7 @@ struct LightParts {
 class DirectLight {
  public:
   explicit DirectLight(const std::vector<Light>& lights);
+  std::size_t count() const { return lights_.size(); }
 
   // Radiance that a point reflects towards v (unit) from all lights, unshadowed: intensity over squared distance with the range window and
   // cones of KHR_lights_punctual, times the cosine, times glTF's reflection (diffuse / pi + D V F, V F approximated as in Karis,
@@ -45,6 +46,9 @@ class DirectLight {
 
 // Where rays that leave a surface start: a little above it, so that they don't meet it again.
 Eigen::Vector3f lifted(const SurfacePoint& point);
+
+// Cosine and sine of a turn in [0, 1), in steps of 1/1024.
+Eigen::Vector2f circle(float turn);
 
 // Two unit vectors that make a right-handed frame with unit n (Duff et al., "Building an orthonormal basis, revisited", JCGT 2017).
 void make_basis(const Eigen::Vector3f& n, Eigen::Vector3f& a, Eigen::Vector3f& b);

@@ -12,10 +12,10 @@ namespace {
 // 2^x by the bits of the exponent and a cubic in between (relative error < 2e-4), for the fit below, whose own error is larger.
 float power_of_two(float x) {
   x = std::max(x, -100.0f);
-  const float whole = std::floor(x);
-  const float f = x - whole;
+  const int whole = static_cast<int>(x) - 1;  // x <= 0
+  const float f = x - static_cast<float>(whole);
   const float mantissa = 1.0f + f * (0.6951786f + f * (0.2276491f + f * 0.0771723f));
-  return mantissa * std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) << 23);
+  return mantissa * std::bit_cast<float>((whole + 127) << 23);
 }
 
 }  // namespace

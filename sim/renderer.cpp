@@ -27,8 +27,8 @@ constexpr int kPacketWidth = 4, kPacketHeight = 2;
 
 // Ambient light is blocked by what is nearer than this (metres), less so the farther it is.
 constexpr float kOcclusionReach = 1.6f;
-constexpr int kOcclusionRays = 2;
-constexpr int kShadowRadius = 2, kOcclusionRadius = 2;
+constexpr int kOcclusionRays = 1;
+constexpr int kShadowRadius = 2, kOcclusionRadius = 4;
 
 struct PixelOffset {
   int x, y;
@@ -59,7 +59,7 @@ BlockSample block_sample(std::uint32_t seed, int x, int y, int blocks_per_row, i
   static constexpr int kBayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
   PixelRandom shift(seed, static_cast<std::uint32_t>((y / 4) * blocks_per_row + x / 4));
   const float k = static_cast<float>(kBayer[(y & 3) * 4 + (x & 3)] + 16 * round);
-  const auto wrap = [](float v) { return v - std::floor(v); };
+  const auto wrap = [](float positive) { return positive - static_cast<float>(static_cast<int>(positive)); };
   const float a = wrap(shift.uniform() + 0.8191725f * k);
   const float b = wrap(shift.uniform() + 0.6710436f * k);
   const float c = wrap(shift.uniform() + 0.5497005f * k);
@@ -243,9 +243,10 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
   if (count == 0) return;
   // Rays to one light travel together.
   std::array<std::uint8_t, kTilePixels> order;
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::uint8_t>(i);
-  std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
-                   [&shadows](std::uint8_t a, std::uint8_t b) { return shadows[a].light < shadows[b].light; });
+  std::vector<std::uint8_t> place(lights.count() + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) ++place[static_cast<std::size_t>(shadows[i].light) + 1];
+  for (std::size_t light = 1; light < place.size(); ++light) place[light] = static_cast<std::uint8_t>(place[light] + place[light - 1]);
+  for (std::size_t i = 0; i < count; ++i) order[place[static_cast<std::size_t>(shadows[i].light)]++] = static_cast<std::uint8_t>(i);
   std::array<Ray, kTilePixels> rays_by_light;
   std::array<std::uint8_t, kTilePixels> blocked;
   for (std::size_t i = 0; i < count; ++i) rays_by_light[i] = shadows[order[i]].ray;
@@ -276,11 +277,12 @@ void Renderer::State::find_openness(std::uint32_t seed) {
           pixels.push_back(h);
           for (int k = 0; k < kOcclusionRays; ++k) {
             const BlockSample sample = block_sample(seed, x, y, blocks_per_row, k);
-            const float radius = std::sqrt(sample.a), angle = 2.0f * std::numbers::pi_v<float> * sample.b;
+            const float radius = std::sqrt(sample.a);
+            const Eigen::Vector2f around = circle(sample.b);
             Ray ray;
             ray.origin = half_positions[h];
             ray.direction =
-                radius * std::cos(angle) * a + radius * std::sin(angle) * b + std::sqrt(std::max(0.0f, 1.0f - sample.a)) * half_normals[h];
+                radius * around.x() * a + radius * around.y() * b + std::sqrt(std::max(0.0f, 1.0f - sample.a)) * half_normals[h];
             // A random reach makes blocking fade with distance at the price of one yes-or-no ray.
             ray.far = kOcclusionReach * sample.c;
             tile_rays.push_back(ray);

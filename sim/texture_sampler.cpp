@@ -57,6 +57,12 @@ int wrapped(int i, int size, Texture::Wrap wrap) {
 // Texel coordinate of u * size, kept where an int can hold it whatever the file says.
 float bounded(float texel) { return std::isfinite(texel) ? std::clamp(texel, -1e8f, 1e8f) : 0.0f; }
 
+// std::floor is a call into the library on the oldest CPUs that we build for. |x| <= 1e8.
+int whole_below(float x) {
+  const int i = static_cast<int>(x);
+  return static_cast<float>(i) > x ? i - 1 : i;
+}
+
 // The four texels around (u, v) and their weights.
 struct Taps {
   int x0, x1, y0, y1;
@@ -67,12 +73,12 @@ Taps taps(const Eigen::Vector2f& uv, int width, int height, Texture::Wrap wrap_u
   const float x = bounded(uv.x() * static_cast<float>(width));
   const float y = bounded(uv.y() * static_cast<float>(height));
   if (nearest) {
-    const int xi = wrapped(static_cast<int>(std::floor(x)), width, wrap_u);
-    const int yi = wrapped(static_cast<int>(std::floor(y)), height, wrap_v);
+    const int xi = wrapped(whole_below(x), width, wrap_u);
+    const int yi = wrapped(whole_below(y), height, wrap_v);
     return {xi, xi, yi, yi, 0.0f, 0.0f};
   }
-  const float xf = std::floor(x - 0.5f), yf = std::floor(y - 0.5f);
-  const int xi = static_cast<int>(xf), yi = static_cast<int>(yf);
+  const int xi = whole_below(x - 0.5f), yi = whole_below(y - 0.5f);
+  const float xf = static_cast<float>(xi), yf = static_cast<float>(yi);
   return {wrapped(xi, width, wrap_u),
           wrapped(xi + 1, width, wrap_u),
           wrapped(yi, height, wrap_v),
