@@ -80,8 +80,7 @@ DirectLight::DirectLight(const std::vector<Light>& lights) : lights_(lights) {
   }
 }
 
-Eigen::Vector3f DirectLight::unshadowed(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v,
-                                        LightParts& parts) const {
+void DirectLight::irradiate(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v, LightParts& parts) const {
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
   const std::size_t count = x_.size();
   parts.diffuse.resize(count);
@@ -120,13 +119,13 @@ Eigen::Vector3f DirectLight::unshadowed(const SurfacePoint& point, const Reflect
     total += weight;
   }
   parts.total = (total[0] + total[1]) + (total[2] + total[3]);
-  Eigen::Vector3f diffuse_sum = Eigen::Vector3f::Zero(), specular_sum = Eigen::Vector3f::Zero();
+  parts.diffuse_sum.setZero();
+  parts.specular_sum.setZero();
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     if (parts.weight[i] == 0.0f) continue;
-    diffuse_sum += parts.diffuse[i] * lights_[i].intensity;
-    specular_sum += parts.specular[i] * lights_[i].intensity;
+    parts.diffuse_sum += parts.diffuse[i] * lights_[i].intensity;
+    parts.specular_sum += parts.specular[i] * lights_[i].intensity;
   }
-  return reflection.diffuse.cwiseProduct(diffuse_sum) + reflection.specular.cwiseProduct(specular_sum);
 }
 
 Eigen::Vector3f DirectLight::radiance(int light, const Reflection& reflection, const LightParts& parts) const {

@@ -10,13 +10,19 @@
 
 namespace waretwin {
 
-// What each light sends towards the viewer by way of one surface point, were nothing in between; by light, then some dark ones. Kept by the
-// caller to save allocations.
+// What the lights send towards one viewer of one surface point, were nothing in between. Lists are by light, then some dark ones; kept by
+// the caller to save allocations.
 struct LightParts {
   std::vector<float> diffuse;   // irradiance / pi, for a light of unit intensity
   std::vector<float> specular;  // irradiance times the glossy lobe without its reflectance, likewise
   std::vector<float> weight;    // luminance of what is reflected
   float total = 0.0f;           // sum of weights
+  Eigen::Vector3f diffuse_sum = Eigen::Vector3f::Zero(), specular_sum = Eigen::Vector3f::Zero();  // over all lights with their intensities
+
+  // Radiance of all lights together.
+  Eigen::Vector3f reflected_by(const Reflection& reflection) const {
+    return reflection.diffuse.cwiseProduct(diffuse_sum) + reflection.specular.cwiseProduct(specular_sum);
+  }
 };
 
 class DirectLight {
@@ -24,10 +30,10 @@ class DirectLight {
   explicit DirectLight(const std::vector<Light>& lights);
   std::size_t count() const { return lights_.size(); }
 
-  // Radiance that a point reflects towards v (unit) from all lights, unshadowed: intensity over squared distance with the range window and
+  // All lights on a point that is seen from direction v (unit), unshadowed: intensity over squared distance with the range window and
   // cones of KHR_lights_punctual, times the cosine, times glTF's reflection (diffuse / pi + D V F, V F approximated as in Karis,
   // "Physically based shading on mobile"). Nearer than its own radius a light no longer gains.
-  Eigen::Vector3f unshadowed(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v, LightParts& parts) const;
+  void irradiate(const SurfacePoint& point, const Reflection& reflection, const Eigen::Vector3f& v, LightParts& parts) const;
   // One light's share of that sum.
   Eigen::Vector3f radiance(int light, const Reflection& reflection, const LightParts& parts) const;
 

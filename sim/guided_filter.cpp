@@ -65,11 +65,11 @@ void smooth(const SurfaceGuide& guide, int radius, std::vector<float>& values, s
           float sum = 0.0f, count = 0.0f;
           for (int k = low; k <= high; ++k) {
             const std::size_t q = p + static_cast<std::size_t>(k * stride);
-            if (!alike(depth, tolerance, normal, guide.depth[q], guide.normal[q], std::abs(k))) continue;
+            if (in[q] < 0.0f || !alike(depth, tolerance, normal, guide.depth[q], guide.normal[q], std::abs(k))) continue;
             sum += in[q];
             count += 1.0f;
           }
-          out[p] = sum / count;
+          out[p] = count > 0.0f ? sum / count : along_rows ? kUnknown : 1.0f;
         }
       }
     });

@@ -21,7 +21,11 @@ std::uint32_t packed_normal(float x, float y, float z);  // components in [-1, 1
 // Whether pixels p and q, `steps` apart, lie on one smooth surface.
 bool same_surface(const SurfaceGuide& guide, std::size_t p, std::size_t q, int steps);
 
-// Mean over (2 radius + 1)^2 neighbours on the same surface, along rows first, then along columns. `scratch` is kept by the caller.
+// A value that is still to be filled in.
+inline constexpr float kUnknown = -1.0f;
+
+// Mean over the known among (2 radius + 1)^2 neighbours on the same surface, along rows first, then along columns; 1 where none is known.
+// Values are >= 0 or kUnknown. `scratch` is kept by the caller.
 void smooth(const SurfaceGuide& guide, int radius, std::vector<float>& values, std::vector<float>& scratch);
 
 // Values of a half-size image (pixel (x, y) belongs to full-size pixel (2x, 2y)) at full-size pixel (x, y): bilinear among the neighbours

@@ -42,7 +42,7 @@ Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom
     const Reflection reflection = reflection_of(point, n_dot_v);
     sum += throughput.cwiseProduct(point.emissive);
 
-    lights_.unshadowed(point, reflection, v, parts);
+    lights_.irradiate(point, reflection, v, parts);
     const float pick = random.uniform(), s = random.uniform(), t = random.uniform();
     const int light = DirectLight::choose(parts, pick);
     if (light >= 0 && !ray_caster_.occluded(lights_.shadow_ray(light, point, s, t))) {

@@ -28,20 +28,20 @@ constexpr int kPacketWidth = 4, kPacketHeight = 2;
 // Ambient light is blocked by what is nearer than this (metres), less so the farther it is.
 constexpr float kOcclusionReach = 1.6f;
 constexpr int kOcclusionRays = 1;
-constexpr int kShadowRadius = 2, kOcclusionRadius = 4;
+constexpr int kShadowRadius = 3, kOcclusionRadius = 4;
 
 struct PixelOffset {
   int x, y;
 };
 
-// Pixel of the i-th ray of a tile.
+// Pixel of the i-th ray of a tile: packet by packet, in each the 2 x 2 quads one after the other.
 constexpr std::array<PixelOffset, kTilePixels> make_tile_order() {
   std::array<PixelOffset, kTilePixels> order{};
   int i = 0;
   for (int py = 0; py < kTileHeight; py += kPacketHeight) {
     for (int px = 0; px < kTileWidth; px += kPacketWidth) {
-      for (int y = 0; y < kPacketHeight; ++y) {
-        for (int x = 0; x < kPacketWidth; ++x) order[static_cast<std::size_t>(i++)] = {px + x, py + y};
+      for (int qx = 0; qx < kPacketWidth; qx += 2) {
+        for (int k = 0; k < 4; ++k) order[static_cast<std::size_t>(i++)] = {px + qx + (k & 1), py + (k >> 1)};
       }
     }
   }
@@ -195,6 +195,11 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
     Ray ray;
   };
   std::array<Shadow, kTilePixels> shadows;
+  struct {
+    int x = -1, y = -1, instance = -1;
+    float roughness = 0.0f, depth = 0.0f;
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  } quad;
   std::size_t count = 0;
   for (const PixelOffset& offset : kTileOrder) {
     const int x = left + offset.x, y = top + offset.y;
@@ -220,7 +225,14 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
     const Eigen::Vector3f v = -ray.direction.normalized();
     const float n_dot_v = std::max(point.normal.dot(v), 1e-3f);
     const Reflection reflection = reflection_of(point, n_dot_v);
-    direct[p] = lights.unshadowed(point, reflection, v, parts);
+    // Light hardly changes within a quad of one smooth surface: its pixels share the lamps' irradiance, each with its own texture.
+    const bool shared = quad.x == x / 2 && quad.y == y / 2 && quad.instance == hit.instance && quad.roughness == reflection.roughness &&
+                        quad.normal.dot(point.normal) > 0.9998f && std::abs(quad.depth - hit.distance) < 0.02f * hit.distance;
+    if (!shared) {
+      lights.irradiate(point, reflection, v, parts);
+      quad = {x / 2, y / 2, hit.instance, reflection.roughness, hit.distance, point.normal};
+    }
+    direct[p] = parts.reflected_by(reflection);
     ambient[p] = scene.ambient.cwiseProduct(reflection.diffuse + reflection.glossy_albedo);
     emitted[p] = point.emissive;
 
@@ -236,6 +248,11 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
       half_normals[h] = point.face_normal;
     }
     if (!options.shadows || !(parts.total > 0.0f)) continue;
+    // Every other pixel, as on a chessboard; the filter fills the rest.
+    if (((x ^ y) & 1) != 0) {
+      visible[p] = kUnknown;
+      continue;
+    }
     const BlockSample sample = block_sample(seed, x, y, blocks_per_row, 0);
     const int light = DirectLight::choose(parts, sample.a);
     shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
