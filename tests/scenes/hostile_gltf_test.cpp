@@ -113,7 +113,7 @@ TEST(HostileGltf, EndsInOneErrorThatNamesTheElement) {
        {"image 0", "2147483647"},
        [](GltfWriter& w) {
          std::string png = "\x89PNG\r\n\x1a\n";
-         png += std::string("\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\x02\0\0\0", 25) + std::string(64, '\0');
+         png += std::string("\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\x02\0\0\0", 21) + std::string(64, '\0');
          w.add("images", {{"bufferView", w.view(png)}});
          w.add("textures", {{"source", 0}});
          w.add("materials", {{"emissiveTexture", {{"index", 0}}}});
