@@ -4,14 +4,16 @@
 
 namespace waretwin::builder {
 
-std::vector<std::string> hall_names() { return {"agiprobot"}; }
+std::vector<std::string> hall_names() { return {"agiprobot", "warehouse"}; }
 
 std::string build_hall(const std::string& name) {
   Kit kit;
   if (name == "agiprobot") {
     build_agiprobot(kit);
+  } else if (name == "warehouse") {
+    build_warehouse(kit);
   } else {
-    throw Error("hall '" + name + "' is not known; expected agiprobot");
+    throw Error("hall '" + name + "' is not known; expected agiprobot or warehouse");
   }
   return kit.model.to_glb(name);
 }

@@ -10,6 +10,8 @@ namespace waretwin::builder {
 
 // The production cell of the paper's section 4.3: 12 x 6 m, four table-top conveyors. Origin in the middle of the floor, x along 12 m.
 void build_agiprobot(Kit& kit);
+// A warehouse of 40 x 25 m with floor-standing conveyors. Origin in the middle of the floor, x along 40 m.
+void build_warehouse(Kit& kit);
 
 std::vector<std::string> hall_names();
 // The hall's model as .glb. The same name gives the same bytes. Throws Error for a name that is not known.

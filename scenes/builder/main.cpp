@@ -1,4 +1,4 @@
-// waretwin_build_halls OUT_FOLDER [agiprobot]: writes OUT_FOLDER/HALL/hall.glb of one hall or all.
+// waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]: writes OUT_FOLDER/HALL/hall.glb of one hall or all.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
   using namespace waretwin;
   if (argc < 2 || argc > 3 || std::string(argv[1]).starts_with("-")) {
-    std::fprintf(stderr, "usage: waretwin_build_halls OUT_FOLDER [agiprobot]\nexample: waretwin_build_halls scenes agiprobot\n");
+    std::fprintf(stderr, "usage: waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]\nexample: waretwin_build_halls scenes agiprobot\n");
     return 2;
   }
   try {
