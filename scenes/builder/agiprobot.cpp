@@ -40,7 +40,7 @@ void add_room(Kit& kit, int hall) {
     for (const double lamp_y : {-1.3, 1.3}) add_ceiling_lamp(kit, room, {lamp_x, lamp_y, kHeight - 0.064}, 14.0);
   }
 
-  add_floor_tape(kit, room, "lane_outer", {{-3.75, -1.62}, {3.75, -1.62}, {3.75, 1.62}, {-3.75, 1.62}, {-3.75, -1.62}}, 0.06,
+  add_floor_tape(kit, room, "lane_outer", {{-3.75, -1.53}, {3.75, -1.53}, {3.75, 1.53}, {-3.75, 1.53}, {-3.75, -1.53}}, 0.06,
                  "yellow_tape");
   add_floor_tape(kit, room, "lane_inner", {{-2.3, -0.38}, {2.3, -0.38}, {2.3, 0.38}, {-2.3, 0.38}, {-2.3, -0.38}}, 0.06, "yellow_tape");
   add_floor_tape(kit, room, "gate_line", {{-5.2, -0.9}, {-5.2, 1.5}}, 0.10, "hazard_tape");
@@ -70,12 +70,12 @@ int add_station(Kit& kit, int hall, const Station& s) {
   kit.place(name + "_sign", station, {0.27, -0.3545, 0.55}, "station_sign_" + std::to_string(s.number), [&](MeshDraft& draft) {
     draft.add(kit.material("marker_" + std::to_string(s.number)), picture({-0.06, 0, 0}, {0.12, 0, 0}, {0, 0, 0.12}));
   });
-  add_floor_tape(kit, station, name + "_dock", {{-0.42, -0.47}, {0.42, -0.47}}, 0.06, "hazard_tape");
+  add_floor_tape(kit, station, name + "_dock", {{-0.40, -0.41}, {0.40, -0.41}}, 0.06, "hazard_tape");
   return station;
 }
 
 void add_station_1(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {1, -1.7, -2.15, 180, {.length = 0.60, .width = 0.40, .height = 0.15}, 0.0, 3.0});
+  const int s = add_station(kit, hall, {1, -1.7, -2.03, 180, {.length = 0.60, .width = 0.40, .height = 0.15}, 0.0, 3.0});
   add_table(kit, s, {-0.87, 0.02, 0, 0}, {.width = 0.8, .depth = 0.7, .shelf = true});
   add_robot_arm(kit, s, {-0.80, 0.10, 0.75, 0}, {.base_deg = -25, .shoulder_deg = 18, .elbow_deg = 82, .wrist_deg = 70});
   add_bin(kit, s, {-1.10, -0.17, 0.75, -8}, 0.22, 0.32, 0.14, "bin_green", true);
@@ -89,10 +89,10 @@ void add_station_1(Kit& kit, int hall) {
              {-0.1, 0.5, 0.05},
              {-0.12, 0.7, 0.05},
              {-0.1, 0.80, 0.6},
-             {-0.1, 0.80, 1.02}},
+             {-0.1, 0.92, 1.02}},
             0.006, "cable_black");
   add_cable(kit, s, "cable_1b",
-            {{-0.80, 0.19, 0.78}, {-0.7, 0.36, 0.76}, {-0.66, 0.41, 0.4}, {-0.6, 0.6, 0.03}, {-0.5, 0.8, 0.3}, {-0.5, 0.80, 1.02}}, 0.007,
+            {{-0.80, 0.19, 0.78}, {-0.7, 0.36, 0.76}, {-0.66, 0.41, 0.4}, {-0.6, 0.6, 0.03}, {-0.5, 0.8, 0.3}, {-0.5, 0.92, 1.02}}, 0.007,
             "cable_grey");
   add_leaning_panel(kit, s, {0.505, 0.05, 0, 90}, 0.55, 0.62, 0.016, 9, "birch");
   add_leaning_panel(kit, s, {0.545, 0.08, 0, 90}, 0.45, 0.50, 0.012, 10, "chipboard");
@@ -100,7 +100,7 @@ void add_station_1(Kit& kit, int hall) {
 }
 
 void add_station_2(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {2, 1.5, -2.17, 180, {.length = 0.64, .width = 0.40, .height = 0.15, .rollers = true}, 0.0, -4.0});
+  const int s = add_station(kit, hall, {2, 1.5, -2.05, 180, {.length = 0.64, .width = 0.40, .height = 0.15, .rollers = true}, 0.0, -4.0});
   add_table(kit, s, {-0.95, 0.05, 0, 2}, {.width = 0.9, .depth = 0.65, .top = "beech"});
   add_monitor(kit, s, {-0.95, 0.17, 0.75, -14}, "screen_status");
   add_keyboard(kit, s, {-0.98, -0.12, 0.75, -6});
@@ -108,9 +108,9 @@ void add_station_2(Kit& kit, int hall) {
   add_signal_tower(kit, s, {-0.33, 0.28, 0.75, 0});
   add_tools(kit, s, {0.20, 0.27, 0.75, 182});
   add_cable(kit, s, "cable_2a",
-            {{0.28, 0.17, 0.757}, {0.36, 0.30, 0.757}, {0.33, 0.40, 0.6}, {0.36, 0.6, 0.1}, {0.3, 0.8, 0.5}, {0.3, 0.82, 1.02}}, 0.006,
+            {{0.28, 0.17, 0.757}, {0.36, 0.30, 0.757}, {0.33, 0.40, 0.6}, {0.36, 0.6, 0.1}, {0.3, 0.8, 0.5}, {0.3, 0.92, 1.02}}, 0.006,
             "cable_yellow");
-  add_cable(kit, s, "cable_2b", {{-0.95, 0.3, 0.80}, {-0.9, 0.41, 0.7}, {-0.8, 0.55, 0.2}, {-0.8, 0.8, 0.5}, {-0.8, 0.82, 1.02}}, 0.005,
+  add_cable(kit, s, "cable_2b", {{-0.95, 0.3, 0.80}, {-0.9, 0.41, 0.7}, {-0.8, 0.55, 0.2}, {-0.8, 0.8, 0.5}, {-0.8, 0.92, 1.02}}, 0.005,
             "cable_black");
   add_leaning_panel(kit, s, {0.50, 0.0, 0, 90}, 0.60, 0.60, 0.018, 8.5, "beech");
   add_stool(kit, s, {-0.95, -0.02 + 0.65, 0, 0});
@@ -119,7 +119,7 @@ void add_station_2(Kit& kit, int hall) {
 }
 
 void add_station_3(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {3, 1.8, 2.15, 0, {.length = 0.58, .width = 0.38, .height = 0.15}, -0.01, 4.0});
+  const int s = add_station(kit, hall, {3, 1.8, 2.03, 0, {.length = 0.58, .width = 0.38, .height = 0.15}, -0.01, 4.0});
   add_cabinet(kit, s, {-0.86, 0.03, 0, -1}, {.width = 0.8, .depth = 0.6, .height = 0.75, .drawers = true});
   add_robot_arm(kit, s, {-0.83, 0.12, 0.75, 0}, {.base_deg = -60, .shoulder_deg = -12, .elbow_deg = 110, .wrist_deg = 55});
   add_bin(kit, s, {-1.09, -0.12, 0.75, 6}, 0.20, 0.28, 0.12, "bin_green", true);
@@ -128,9 +128,9 @@ void add_station_3(Kit& kit, int hall) {
   add_control_box(kit, s, {-0.31, 0.26, 0.75, -10});
   add_monitor_stand(kit, s, {-1.55, 0.15, 0, -12}, "screen_plot", 1.45);
   add_cable(kit, s, "cable_3a",
-            {{-0.31, 0.30, 0.77}, {-0.25, 0.37, 0.74}, {-0.26, 0.5, 0.2}, {-0.2, 0.7, 0.05}, {-0.2, 0.82, 0.5}, {-0.2, 0.82, 1.02}}, 0.006,
+            {{-0.31, 0.30, 0.77}, {-0.25, 0.37, 0.74}, {-0.26, 0.5, 0.2}, {-0.2, 0.7, 0.05}, {-0.2, 0.82, 0.5}, {-0.2, 0.92, 1.02}}, 0.006,
             "cable_black");
-  add_cable(kit, s, "cable_3b", {{-1.55, 0.24, 0.7}, {-1.5, 0.4, 0.2}, {-1.35, 0.6, 0.02}, {-1.2, 0.8, 0.4}, {-1.2, 0.82, 1.02}}, 0.006,
+  add_cable(kit, s, "cable_3b", {{-1.55, 0.24, 0.7}, {-1.5, 0.4, 0.2}, {-1.35, 0.6, 0.02}, {-1.2, 0.8, 0.4}, {-1.2, 0.92, 1.02}}, 0.006,
             "cable_blue");
   add_leaning_panel(kit, s, {0.50, 0.02, 0, 90}, 0.50, 0.55, 0.018, 9, "chipboard");
   add_leaning_panel(kit, s, {0.54, 0.0, 0, 90}, 0.58, 0.48, 0.012, 10.5, "birch");
@@ -138,7 +138,7 @@ void add_station_3(Kit& kit, int hall) {
 }
 
 void add_station_4(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {4, -1.5, 2.17, 0, {.length = 0.62, .width = 0.42, .height = 0.16, .rollers = true}, 0.01, -7.0});
+  const int s = add_station(kit, hall, {4, -1.5, 2.05, 0, {.length = 0.62, .width = 0.42, .height = 0.16, .rollers = true}, 0.01, -7.0});
   add_table(kit, s, {-0.92, 0.05, 0, -2}, {.width = 0.9, .depth = 0.7});
   add_laptop(kit, s, {-0.85, 0.0, 0.75, 18});
   add_book_stack(kit, s, {-1.2, 0.15, 0.75, 25});
@@ -146,9 +146,9 @@ void add_station_4(Kit& kit, int hall) {
   add_bin(kit, s, {0.26, 0.29, 0.75, 0}, 0.20, 0.11, 0.09, "bin_green", true);
   add_signal_tower(kit, s, {-0.35, 0.29, 0.75, 0});
   add_cable(kit, s, "cable_4a",
-            {{-0.32, 0.29, 0.76}, {-0.2, 0.31, 0.757}, {-0.1, 0.37, 0.73}, {-0.1, 0.5, 0.2}, {-0.2, 0.8, 0.4}, {-0.2, 0.80, 1.02}}, 0.006,
+            {{-0.32, 0.29, 0.76}, {-0.2, 0.31, 0.757}, {-0.1, 0.37, 0.73}, {-0.1, 0.5, 0.2}, {-0.2, 0.8, 0.4}, {-0.2, 0.92, 1.02}}, 0.006,
             "cable_grey");
-  add_cable(kit, s, "cable_4b", {{-0.60, 0.34, 0.78}, {-0.58, 0.42, 0.7}, {-0.5, 0.6, 0.1}, {-0.6, 0.8, 0.4}, {-0.6, 0.80, 1.02}}, 0.007,
+  add_cable(kit, s, "cable_4b", {{-0.60, 0.34, 0.78}, {-0.58, 0.42, 0.7}, {-0.5, 0.6, 0.1}, {-0.6, 0.8, 0.4}, {-0.6, 0.92, 1.02}}, 0.007,
             "cable_black");
   add_leaning_panel(kit, s, {0.505, -0.03, 0, 90}, 0.48, 0.64, 0.018, 9, "birch");
   add_bin(kit, s, {0.90, 0.22, 0, 8}, 0.40, 0.30, 0.22, "bin_green");
@@ -162,7 +162,7 @@ void add_surroundings(Kit& kit, int hall) {
   add_monitor(kit, east, {5.68, -1.88, 0.75, -101}, "screen_plot");
   add_keyboard(kit, east, {5.42, -1.5, 0.75, -88});
   add_cup(kit, east, {5.45, -2.05, 0.75, 10});
-  add_office_chair(kit, east, {4.72, -1.62, 0, 112}, "fabric_black");
+  add_office_chair(kit, east, {4.72, -1.53, 0, 112}, "fabric_black");
   add_table(kit, east, {5.55, 0.2, 0, -90}, {.width = 1.4, .depth = 0.75, .top = "beech"});
   add_laptop(kit, east, {5.48, 0.35, 0.75, -78});
   add_book_stack(kit, east, {5.6, -0.2, 0.75, 14});

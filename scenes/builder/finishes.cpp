@@ -66,15 +66,17 @@ Finish concrete_floor() {
 }
 
 Finish tyre_marks() {
-  cv::Mat t(128, 512, CV_8UC4, Scalar(44, 44, 46, 0));
+  cv::Mat t(128, 512, CV_8UC4, Scalar(96, 96, 98, 0));
   const cv::Mat gaps = tiling_noise(512, 128, 32, 3, "tyre gaps");
   const cv::Mat fade = tiling_noise(512, 128, 4, 2, "tyre fade");
+  const RandomStream random(0, "tyre", "specks");
   for (int y = 0; y < t.rows; ++y) {
     const bool groove = (y / 8) % 4 == 3;
     for (int x = 0; x < t.cols; ++x) {
       const bool lug = ((x + y / 2) / 6) % 3 != 0;
-      const double ink = static_cast<double>(gaps.at<float>(y, x)) * 0.6 + static_cast<double>(fade.at<float>(y, x)) * 0.6;
-      t.at<cv::Vec4b>(y, x)[3] = !groove && lug && ink > 0.66 ? 255 : 0;
+      const double ink = static_cast<double>(gaps.at<float>(y, x)) * 0.5 + static_cast<double>(fade.at<float>(y, x)) * 0.5;
+      const double speck = random.uniform(static_cast<std::uint64_t>(y * t.cols + x));
+      t.at<cv::Vec4b>(y, x)[3] = !groove && lug && speck < 2.6 * (ink - 0.42) ? 255 : 0;
     }
   }
   Finish f = textured(t, 1.6, 0.12, 0, 0.8, 0.2);
@@ -156,8 +158,8 @@ Finish cardboard() {
 }
 
 Finish wall_paint() {
-  cv::Mat t = mottled(512, 512, {218, 224, 226}, 4, 3, "wall");
-  add_stains(t, -12, 0.6, 3, "wall");
+  cv::Mat t = mottled(512, 512, {220, 226, 228}, 3, 2, "wall");
+  add_stains(t, -5, 0.6, 3, "wall");
   add_scratches(t, 40, 40, {190, 194, 196}, 0.4, "wall");
   return textured(t, 2.5, 2.5, 0, 0.9, 0.7);
 }

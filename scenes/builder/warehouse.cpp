@@ -1,3 +1,4 @@
+#include "core/random.h"
 #include "scenes/builder/halls.h"
 #include "scenes/builder/parts/conveyors.h"
 #include "scenes/builder/parts/furniture.h"
