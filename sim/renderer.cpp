@@ -28,7 +28,7 @@ constexpr int kPacketWidth = 4, kPacketHeight = 2;
 // Ambient light is blocked by what is nearer than this (metres), less so the farther it is.
 constexpr float kOcclusionReach = 1.6f;
 constexpr int kOcclusionRays = 1;
-constexpr int kShadowRadius = 3, kOcclusionRadius = 4;
+constexpr int kShadowRadius = 4, kOcclusionRadius = 4;
 
 struct PixelOffset {
   int x, y;
@@ -49,22 +49,36 @@ constexpr std::array<PixelOffset, kTilePixels> make_tile_order() {
 }
 constexpr auto kTileOrder = make_tile_order();
 
-// Well spread points for the 4 x 4 pixels of a block, each block shifted at random: a rank-1 lattice in three dimensions (M. Roberts, "The
-// unreasonable effectiveness of quasirandom sequences", 2018), dealt out in the order of a 4 x 4 Bayer matrix. A filter as wide as a block
-// then sees nearly even samples.
-struct BlockSample {
+// Pixels in Z-order: every aligned block of 2^n x 2^n pixels holds consecutive numbers.
+std::uint32_t spread_bits(std::uint32_t v) {
+  v = (v | v << 8) & 0x00ff00ffu;
+  v = (v | v << 4) & 0x0f0f0f0fu;
+  v = (v | v << 2) & 0x33333333u;
+  return (v | v << 1) & 0x55555555u;
+}
+std::uint32_t z_order(int x, int y) { return spread_bits(static_cast<std::uint32_t>(x)) | spread_bits(static_cast<std::uint32_t>(y)) << 1; }
+
+// Well spread points for neighbouring pixels: the k-th point of a rank-1 sequence in three dimensions (M. Roberts, "The unreasonable
+// effectiveness of quasirandom sequences", 2018), dealt out along the Z-order, so that whatever a filter averages is nearly even (Ahmed
+// and Wonka, "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels", 2020). Each coordinate
+// in [0, 1).
+struct SpreadPoint {
   float a, b, c;
 };
-BlockSample block_sample(std::uint32_t seed, int x, int y, int blocks_per_row, int round) {
-  static constexpr int kBayer[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  PixelRandom shift(seed, static_cast<std::uint32_t>((y / 4) * blocks_per_row + x / 4));
-  const float k = static_cast<float>(kBayer[(y & 3) * 4 + (x & 3)] + 16 * round);
-  const auto wrap = [](float positive) { return positive - static_cast<float>(static_cast<int>(positive)); };
-  const float a = wrap(shift.uniform() + 0.8191725f * k);
-  const float b = wrap(shift.uniform() + 0.6710436f * k);
-  const float c = wrap(shift.uniform() + 0.5497005f * k);
-  return {std::min(a, 0.9999999f), std::min(b, 0.9999999f), std::min(c, 0.9999999f)};
-}
+class SpreadPoints {
+ public:
+  explicit SpreadPoints(std::uint32_t seed) {
+    PixelRandom random(seed, 0);
+    for (std::uint32_t& shift : shift_) shift = static_cast<std::uint32_t>(random.uniform() * 0x1p32f);
+  }
+  SpreadPoint at(std::uint32_t k) const {
+    const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
+    return {unit(shift_[0] + k * 3518319155u), unit(shift_[1] + k * 2882110345u), unit(shift_[2] + k * 2360945575u)};
+  }
+
+ private:
+  std::uint32_t shift_[3];
+};
 
 cv::Vec3b tone_mapped_bgr(const Eigen::Vector3f& radiance) {
   return {tone_mapped(radiance.z()), tone_mapped(radiance.y()), tone_mapped(radiance.x())};
@@ -188,7 +202,7 @@ void Renderer::State::shade(const PixelRays& pixel_rays, std::uint32_t seed) {
 
 void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, LightParts& parts) {
   const Scene& scene = ray_caster->scene();
-  const int blocks_per_row = (width + 3) / 4;
+  const SpreadPoints spread(seed);
   struct Shadow {
     int light;
     std::size_t pixel;
@@ -253,7 +267,8 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
       visible[p] = kUnknown;
       continue;
     }
-    const BlockSample sample = block_sample(seed, x, y, blocks_per_row, 0);
+    // Of each quad the first and the last pixel are left: two numbers a quad.
+    const SpreadPoint sample = spread.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
     const int light = DirectLight::choose(parts, sample.a);
     shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
   }
@@ -276,7 +291,7 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
 void Renderer::State::find_openness(std::uint32_t seed) {
   const int half_width = half_guide.width;
   openness.assign(half_guide.depth.size(), 1.0f);
-  const int blocks_per_row = (half_width + 3) / 4;
+  const SpreadPoints spread(seed);
   constexpr std::size_t kRowsAtOnce = 4;
   parallel_for(static_cast<std::size_t>(half_guide.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::vector<Ray> tile_rays;
@@ -293,7 +308,7 @@ void Renderer::State::find_openness(std::uint32_t seed) {
           make_basis(half_normals[h], a, b);
           pixels.push_back(h);
           for (int k = 0; k < kOcclusionRays; ++k) {
-            const BlockSample sample = block_sample(seed, x, y, blocks_per_row, k);
+            const SpreadPoint sample = spread.at(z_order(x, y) * kOcclusionRays + static_cast<std::uint32_t>(k));
             const float radius = std::sqrt(sample.a);
             const Eigen::Vector2f around = circle(sample.b);
             Ray ray;
