@@ -69,7 +69,7 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
                   bolt({x, side * (c.width / 2 - inset), rail_height + profile_height / 2}, {0, side, 0}, 0.0065));
       }
       // End plates, up to the belt or the rollers' axles.
-      const double plate = (c.rollers ? c.height - 0.03 : c.height - 0.051) - rail_height;
+      const double plate = (c.rollers ? c.height - 0.022 : c.height - 0.051) - rail_height;
       const double plate_inset = c.rollers ? 0.005 : 0.03;  // where the belt runs level
       draft.add(
           kit.material("black_plastic"),
@@ -77,9 +77,9 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
     }
     draft.add(kit.material("dark_steel"), standing_box(c.length - 0.08, c.width - 0.10, 0.012).move(0, 0, rail_height - 0.008));
     if (c.rollers) {
-      // A tray close below the rollers, so that nothing falls through.
+      // A cover between the rollers, so that nothing falls through.
       draft.add(kit.material("dark_steel"),
-                standing_box(c.length - 0.02, c.width - 2 * (inset + profile_width), 0.004).move(0, 0, c.height - 0.03));
+                standing_box(c.length - 0.012, c.width - 2 * (inset + profile_width), 0.004).move(0, 0, c.height - 0.024));
     }
     const double between = c.width - 2 * (inset + profile_width) - 0.006;
     if (c.rollers) {

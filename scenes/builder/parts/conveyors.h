@@ -14,7 +14,7 @@ struct TableTopConveyor {
   std::string name = "conveyor";
   double length = 0.60, width = 0.40, height = 0.15;  // x, y, z in metres
   bool rollers = false;
-  double roller_pitch = 0.053;
+  double roller_pitch = 0.062;
 };
 int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const TableTopConveyor& c);
 
