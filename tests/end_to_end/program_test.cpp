@@ -1,0 +1,134 @@
+#include "tests/end_to_end/program.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace waretwin {
+namespace {
+
+using test::agiprobot;
+using test::TemporaryFolder;
+
+TEST(Program, ExplainsItself) {
+  const auto top = test::waretwin("--help");
+  EXPECT_EQ(top.exit_code, 0);
+  for (const char* command : {"run", "map", "score", "render", "inspect"}) {
+    EXPECT_NE(top.out.find(command), std::string::npos) << command;
+    const auto help = test::waretwin(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0) << command;
+    for (const char* word : {"Example", "--seed", "--threads", "--set", "--quiet"}) {
+      EXPECT_NE(help.out.find(word), std::string::npos) << command << " " << word;
+    }
+  }
+  const auto version = test::waretwin("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_NE(version.out.find("waretwin "), std::string::npos);
+}
+
+TEST(Program, RefusesWhatItDoesNotKnowInOneLine) {
+  EXPECT_ONE_LINE(test::waretwin("runn"), "runn");
+  EXPECT_ONE_LINE(test::waretwin(""), "subcommand");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --profil paper"), "--profil");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --profile papr"), "papr");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --threads many"), "many");
+  EXPECT_ONE_LINE(test::waretwin("run --out o"), "SCENARIO");
+  EXPECT_ONE_LINE(test::waretwin("render model.glb --out o.png --time 1 --pose 0,0,0,0,0"), "--");
+}
+
+TEST(Program, NamesAMissingFile) {
+  const TemporaryFolder folder;
+  const std::string out = " --out '" + folder.path().string() + "/out'";
+  EXPECT_ONE_LINE(test::waretwin("run nowhere.yaml" + out), "nowhere.yaml");
+  EXPECT_ONE_LINE(test::waretwin("map nowhere" + out), "nowhere");
+  EXPECT_ONE_LINE(test::waretwin("render nowhere.glb" + out), "nowhere.glb");
+  EXPECT_ONE_LINE(test::waretwin("inspect nowhere.glb"), "nowhere.glb");
+  EXPECT_ONE_LINE(test::waretwin("score nowhere.json --truth nothing.json"), "nowhere.json");
+  EXPECT_ONE_LINE(test::waretwin("run " + agiprobot() + out + " --detector nowhere.cfg"), "nowhere.cfg");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out")) << "bad input leaves nothing behind";
+}
+
+TEST(Program, NamesTheNearestKey) {
+  const TemporaryFolder folder;
+  const std::string run = "run " + agiprobot() + " --out '" + folder.path().string() + "/out' --set ";
+  EXPECT_ONE_LINE(test::waretwin(run + "mapper.integrate.voxel_n=0.02"), "voxel_m");
+  EXPECT_ONE_LINE(test::waretwin(run + "maper.rate_hz=1"), "mapper");
+  EXPECT_ONE_LINE(test::waretwin(run + "mapper.rate_hz=fast"), "fast");
+  EXPECT_ONE_LINE(test::waretwin(run + "mapper.rate_hz"), "=");
+  const TemporaryFolder copy;
+  std::filesystem::copy(test::repository() / "scenes/agiprobot", copy.path() / "hall", std::filesystem::copy_options::recursive);
+  {
+    std::ofstream scenario(copy.path() / "hall/scenario.yaml", std::ios::app);
+    scenario << "\nrobott: {}\n";
+  }
+  const auto result =
+      test::waretwin("run '" + (copy.path() / "hall/scenario.yaml").string() + "' --out '" + folder.path().string() + "/out'");
+  EXPECT_ONE_LINE(result, "robot");
+  EXPECT_NE(result.err.find("scenario.yaml:"), std::string::npos) << "file and line: " << result.err;
+}
+
+TEST(Program, NamesATruncatedModel) {
+  const TemporaryFolder copy;
+  std::filesystem::copy(test::repository() / "scenes/agiprobot", copy.path() / "hall", std::filesystem::copy_options::recursive);
+  std::filesystem::path model;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(copy.path() / "hall")) {
+    if (entry.path().extension() == ".glb") model = entry.path();
+  }
+  ASSERT_FALSE(model.empty());
+  std::filesystem::resize_file(model, std::filesystem::file_size(model) / 2);
+  EXPECT_ONE_LINE(test::waretwin("inspect '" + model.string() + "'"), model.filename().string());
+  EXPECT_ONE_LINE(test::waretwin("run '" + (copy.path() / "hall/scenario.yaml").string() + "' --out '" + copy.path().string() + "/out'"),
+                  model.filename().string());
+}
+
+TEST(Program, NoticesAFullDisk) {
+  // A limit on the size of files stands for a full disk; the shell counts in blocks of 512 or 1024 bytes.
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "picture.png").string();
+  const auto limited = test::waretwin("render " + agiprobot() + " --size 320x180 --out '" + out + "'", "ulimit -f 4; trap '' XFSZ;");
+  EXPECT_ONE_LINE(limited, "picture.png");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing half-written is left";
+  EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --size 320x180 --out /dev/full/picture.png"), "/dev/full");
+}
+
+TEST(Program, RendersAPicture) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "picture.png").string();
+  const auto result = test::waretwin("render " + agiprobot() + " --size 320x180 --pose=0,0,1.5,90,20 --out '" + out + "'");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(read_file(out).starts_with("\x89PNG"));
+}
+
+TEST(Program, ListsTheKeys) {
+  const auto result = test::waretwin("inspect " + agiprobot() + " --keys");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* key : {"voxel_m", "rate_hz", "truth_depth", "route", "min_visible_fraction"}) {
+    EXPECT_NE(result.out.find(key), std::string::npos) << key;
+  }
+  EXPECT_EQ(test::waretwin("inspect " + agiprobot()).exit_code, 0);
+}
+
+TEST(Program, ScoresListsAndTrajectories) {
+  const TemporaryFolder folder;
+  const auto at = [&](const char* name) { return "'" + (folder.path() / name).string() + "'"; };
+  write_file(folder.path() / "cuboids.json", R"({"objects":[{"id":9,"class":"c","centre":[0.4,0,0.5],"yaw":0,"size":[2,1,1]}]})");
+  write_file(folder.path() / "truth.json", R"({"objects":[{"id":1,"class":"c","centre":[0,0,0.5],"yaw":0,"size":[2,1,1]}]})");
+  const auto lists = test::waretwin("score " + at("cuboids.json") + " --truth " + at("truth.json") + " --out " + at("score"));
+  EXPECT_EQ(lists.exit_code, 0) << lists.err;
+  EXPECT_NE(lists.out.find("| 1 | 9 | 0.6667 | 0.400 | 0.0 |"), std::string::npos) << lists.out;
+  const auto json = nlohmann::json::parse(read_file(folder.path() / "score/score.json"));
+  EXPECT_NEAR(json["summary"]["mean_iou3d"].get<double>(), 1.6 / 2.4, 1e-12);
+
+  write_file(folder.path() / "a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 1 1 0 0 0 0 1\n");
+  write_file(folder.path() / "b.tum", "0 0 0 3 0 0 0 1\n1 1 0 3 0 0 0 1\n2 1 1 3 0 0 0 1\n");
+  const auto trajectories = test::waretwin("score " + at("a.tum") + " --truth " + at("b.tum"));
+  EXPECT_EQ(trajectories.exit_code, 0) << trajectories.err;
+  const auto ate = nlohmann::json::parse(trajectories.out);
+  EXPECT_NEAR(ate["trajectory"]["ate_rmse_m"].get<double>(), 0.0, 1e-9) << "aligned";
+  EXPECT_NEAR(ate["trajectory"]["ate_unaligned_rmse_m"].get<double>(), 3.0, 1e-9);
+  EXPECT_ONE_LINE(test::waretwin("score " + at("a.tum") + " --truth " + at("truth.json")), "truth.json");
+}
+
+}  // namespace
+}  // namespace waretwin
