@@ -136,7 +136,7 @@ cv::Mat draw_oblique(const MapScene& scene, double ceiling) {
   const bool along_x = box.sizes().x() >= box.sizes().y();
   const Eigen::Vector3d away = along_x ? Eigen::Vector3d(-0.35, -0.75, 0.75) : Eigen::Vector3d(-0.75, -0.35, 0.75);
   const Eigen::Vector3d target = box.center();
-  Picture picture(PictureView::perspective(target + 0.95 * reach * away.normalized(), target, 1280, 720, to_radians(48.0)), kPaper);
+  Picture picture(PictureView::perspective(target + 0.68 * reach * away.normalized(), target, 1280, 720, to_radians(48.0)), kPaper);
   picture.draw(tinted(scene), ceiling);
   for (const ListedObject& object : scene.mapped) {
     picture.draw_edges(object.cuboid, colour_of_id(object.id), 1);

@@ -15,13 +15,13 @@ struct MapScene {
   PictureMesh mesh;
   std::vector<std::int32_t> labels;  // map id of each vertex, 0 = background; empty: no objects are tinted
   std::vector<ListedObject> mapped;
-  std::vector<ListedObject> truth;             // empty where there is none
-  std::vector<StampedPose> trajectory;         // as estimated
-  std::vector<StampedPose> true_trajectory;    // empty where there is none
+  std::vector<ListedObject> truth;           // empty where there is none
+  std::vector<StampedPose> trajectory;       // as estimated
+  std::vector<StampedPose> true_trajectory;  // empty where there is none
 };
 
-// The mesh from above without what hangs higher than `ceiling` metres above the floor, true cuboids as outlines, mapped ones with their ids,
-// the path, a legend and a scale bar. BGR, at most about 1600 pixels on the longer side.
+// The mesh from above without what hangs higher than `ceiling` metres above the floor, true cuboids as outlines, mapped ones with their
+// ids, the path, a legend and a scale bar. BGR, at most about 1600 pixels on the longer side.
 cv::Mat draw_from_above(const MapScene& scene, double ceiling);
 
 // The mesh from an oblique viewpoint outside, objects tinted by their ids, with their cuboids. BGR, 1280 x 720.

@@ -95,7 +95,7 @@ void Picture::fill(const std::array<Eigen::Vector3d, 3>& p, const std::array<Eig
   const double high_v = std::min(view_.height() - 1.0, std::floor(std::max({p[0].y(), p[1].y(), p[2].y()})));
   for (int v = static_cast<int>(low_v); v <= high_v; ++v) {
     for (int u = static_cast<int>(low_u); u <= high_u; ++u) {
-      const double a = edge(p[1], p[2], u, v) / area, b = edge(p[2], p[0], u, v) / area, c = 1.0 - a - b;
+      const double a = edge(p[1], p[2], u, v) / area, b = edge(p[2], p[0], u, v) / area, c = edge(p[0], p[1], u, v) / area;
       if (a < 0.0 || b < 0.0 || c < 0.0) continue;
       const auto near = static_cast<float>(a * p[0].z() + b * p[1].z() + c * p[2].z());
       if (near <= inverse_depth_.at<float>(v, u)) continue;

@@ -72,6 +72,13 @@ double average_precision(std::vector<RankedObject> ranked, int truth_count) {
 
 }  // namespace
 
+void ScoringRules::visit(Fields& f) {
+  f("max_centre_distance_m", max_centre_distance_m, "the centres of a pair are nearer than this", {.min = 0, .max = 1000});
+  f("match_iou", match_iou, "a pair is matched from this 3D IoU on", {.min = 0, .max = 1});
+  f("min_visible_fraction", min_visible_fraction, "true objects of which less was seen do not count", {.min = 0, .max = 1});
+  f("square_ratio", square_ratio, "below this dx / dy a box looks the same after 90 deg", {.min = 1, .max = 10});
+}
+
 ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth, const ScoringRules& rules) {
   ObjectListScore result;
   result.objects.resize(truth.size());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/fields.h"
 #include "harness/score/cuboid_file.h"
 
 namespace waretwin {
@@ -14,6 +15,7 @@ struct ScoringRules {
   double match_iou = 0.5;              // matched: IoU of at least this
   double min_visible_fraction = 0.6;   // true objects that were seen less do not count
   double square_ratio = 1.1;           // dx / dy below this: the box looks the same after 90 deg
+  void visit(Fields& f);
 };
 
 // One true object and what was mapped of it.

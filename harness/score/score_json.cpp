@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/cpu_features.h"
 #include "core/pose.h"
 #include "core/version.h"
 
@@ -74,6 +75,7 @@ std::string score_json(const RunScore& score) {
   json["seed"] = score.seed;
   json["version"] = kVersion;
   json["digest"] = score.digest;
+  json["cpu"] = {{"model", cpu_model()}, {"features", cpu_features()}};
   json["stages"] = score.stages;
   add_objects(json, score.objects);
   json["trajectory"] = nullptr;

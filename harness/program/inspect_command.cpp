@@ -1,0 +1,121 @@
+// waretwin inspect: what is in a file.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <variant>
+
+#include "core/error.h"
+#include "harness/program/common_options.h"
+#include "harness/run/map_config.h"
+#include "harness/run/run_config.h"
+#include "harness/score/cuboid_file.h"
+#include "mapper/integrate/tsdf_volume.h"
+#include "mapper/output/map_archive.h"
+#include "scenes/describe.h"
+#include "scenes/gltf_loader.h"
+
+namespace waretwin {
+
+namespace {
+
+struct InspectOptions {
+  CommonOptions common;
+  std::string file;
+  bool keys = false;
+};
+
+void describe_objects(const std::vector<ListedObject>& objects) {
+  std::cout << objects.size() << " objects\n";
+  for (const ListedObject& object : objects) {
+    const Cuboid& c = object.cuboid;
+    std::cout << "  " << object.id << " " << object.class_name << ": centre " << c.centre.transpose() << " m, size " << c.size.transpose()
+              << " m, yaw " << to_degrees(c.yaw) << " deg, frame " << c.frame << "\n";
+  }
+}
+
+void describe_map(const std::filesystem::path& file) {
+  const LoadedMap map = load_map(file);
+  std::size_t surface_blocks = 0;
+  for (std::size_t i = 0; i < map.volume->size(); ++i) surface_blocks += map.volume->block(i).surface ? 1 : 0;
+  std::cout << "map: voxels of " << map.volume->voxel_m() << " m, " << map.volume->size() << " blocks of 8 x 8 x 8, " << surface_blocks
+            << " with a surface, " << map.volume->bytes() / (1 << 20) << " MB\n";
+  std::vector<ListedObject> objects;
+  for (const MappedObject& object : map.objects) objects.push_back({object.id, object.class_name, object.cuboid, 1.0, 1.0});
+  describe_objects(objects);
+}
+
+void describe_recording(const std::filesystem::path& folder, const RecordingConfig& config) {
+  const auto stream = open_recording(folder, config);
+  const StreamInfo& info = stream->info();
+  std::cout << "recording: " << info.source << "\n";
+  for (const auto& [name, camera] : info.cameras) {
+    const Intrinsics& k = camera.intrinsics;
+    std::cout << "  camera " << name << ": " << k.width << " x " << k.height << " pixels, fx " << k.fx << " fy " << k.fy << " cx " << k.cx
+              << " cy " << k.cy << ", depth " << camera.depth_min_m << " to " << camera.depth_max_m << " m, " << camera.rate_hz << " Hz\n";
+  }
+  for (const auto& [name, laser] : info.lasers) std::cout << "  laser " << name << ": " << laser.rate_hz << " Hz\n";
+  int frames = 0, scans = 0, readings = 0;
+  std::optional<Stamp> first;
+  Stamp last = 0;
+  while (const auto event = stream->next()) {
+    last = stamp_of(*event);
+    if (!first) first = last;
+    frames += std::holds_alternative<RgbdFrame>(*event) ? 1 : 0;
+    scans += std::holds_alternative<LaserScan>(*event) ? 1 : 0;
+    readings += std::holds_alternative<OdometryReading>(*event) ? 1 : 0;
+  }
+  std::cout << "  " << frames << " frames, " << scans << " scans, " << readings << " odometry readings in "
+            << (first ? to_seconds(last - *first) : 0.0) << " s\n  poses " << (info.has_recorded_poses ? "recorded" : "not recorded")
+            << ", up is " << info.up_W.transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
+}
+
+int inspect(const InspectOptions& options) {
+  options.common.apply();
+  const std::filesystem::path file = options.file;
+  if (!std::filesystem::exists(file)) throw Error(file, "does not exist; expected a scenario, a model, a recording's folder or a map");
+  const std::string extension = file.extension().string();
+  const std::vector<Setting> settings = options.common.settings();
+  if (extension == ".yaml" || extension == ".yml") {
+    const RunConfig defaults;
+    RunConfig config = load_run_config(file, defaults, settings);
+    std::cout << (options.keys ? describe_config([&](Fields& f) { config.visit(f); }) : describe_scenario(config.scenario));
+    return 0;
+  }
+  if (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json")) {
+    MapConfig config;
+    apply_settings(settings, [&](Fields& f) { config.visit(f); });
+    if (options.keys) {
+      std::cout << describe_config([&](Fields& f) { config.visit(f); });
+    } else {
+      describe_recording(file, config.recording);
+    }
+    return 0;
+  }
+  if (options.keys) throw Error(file, "has no keys; expected a scenario or a recording's folder");
+  if (extension == ".glb" || extension == ".gltf") {
+    std::cout << describe_scene(load_gltf(file));
+  } else if (extension == ".waretwin") {
+    describe_map(file);
+  } else if (extension == ".json" || std::filesystem::is_directory(file)) {
+    describe_objects(read_object_list(file_or_in_folder(file, "cuboids.json")));
+  } else {
+    throw Error(file, "is of an unknown kind; expected .yaml, .glb, .gltf, .waretwin, .json or a recording's folder");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_inspect_command(CLI::App& program) {
+  auto options = std::make_shared<InspectOptions>();
+  CLI::App* command = program.add_subcommand("inspect", "what is in a scenario, a glTF file, a recording or a map");
+  command->add_option("FILE", options->file, "scenario, .glb, .gltf, recording's folder, map.waretwin, cuboids.json or a run's folder")
+      ->required();
+  command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
+  options->common.add_to(*command);
+  command->footer("Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys");
+  return {command, [options] { return inspect(*options); }};
+}
+
+}  // namespace waretwin

@@ -1,0 +1,79 @@
+// waretwin map: the mapper on a recording.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "core/error.h"
+#include "harness/program/common_options.h"
+#include "harness/program/mapping_options.h"
+#include "harness/program/progress.h"
+#include "harness/run/map_config.h"
+#include "harness/run/run_folder.h"
+
+namespace waretwin {
+
+namespace {
+
+struct MapOptions {
+  CommonOptions common;
+  MappingOptions mapping;
+  std::string recording, out, poses;
+};
+
+int map(const MapOptions& options) {
+  options.common.apply();
+  if (options.mapping.detector == "truth")
+    throw Error("--detector truth: a recording holds no true boxes; expected none, a model or a JSON file");
+  MapConfig config;
+  config.mapper = options.mapping.mapper_config();
+  if (!options.poses.empty()) config.mapper.poses = options.poses;
+  config.frames = options.mapping.frames;
+  apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
+
+  const auto stream = open_recording(options.recording, config.recording);
+  RunFolder folder(options.out);
+  MapConfig resolved = config;
+  folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "recording " + options.recording));
+  if (config.mapper.detector == "none") spdlog::info("no detector was named (--detector): no objects are mapped");
+  MappingResult result;
+  {
+    Progress progress("map", options.common.quiet);
+    MappingHooks hooks;
+    hooks.progress = [&](double done, const ObjectMap& map) {
+      progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
+    };
+    result = map_stream(*stream, config.mapper, make_stages(config.mapper, stream->info()), config.frames, hooks);
+  }
+  if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
+  write_mapping(folder, result, options.recording, config.mapper.profile);
+
+  for (const ListedObject& object : listed(result.map.objects)) {
+    const Cuboid& c = object.cuboid;
+    std::cout << object.id << " " << object.class_name << " at " << c.centre.transpose() << " size " << c.size.transpose() << "\n";
+  }
+  std::cout << result.map.frames.size() << " of " << result.map.frames_seen << " frames mapped, " << result.map.objects.size()
+            << " objects, digest " << digest_of(result.map) << "\nresults in " << options.out << " (report.html, map.glb, cuboids.json)\n";
+  return 0;
+}
+
+}  // namespace
+
+Command add_map_command(CLI::App& program) {
+  auto options = std::make_shared<MapOptions>();
+  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout, laser logs)");
+  command->add_option("RECORDING", options->recording, "folder of a recording")->required();
+  command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
+  options->mapping.add_to(
+      *command, "none (default: no objects); a model's folder or file; yolo with --set mapper.model=FILE; a JSON file with boxes");
+  command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
+      ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
+  options->common.add_to(*command);
+  command->footer(
+      "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n\n"
+      "`waretwin inspect RECORDING --keys` lists every key for --set.");
+  return {command, [options] { return map(*options); }};
+}
+
+}  // namespace waretwin

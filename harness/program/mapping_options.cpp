@@ -1,0 +1,42 @@
+#include "harness/program/mapping_options.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "core/error.h"
+
+namespace waretwin {
+
+void MappingOptions::add_to(CLI::App& command, const std::string& detector_help) {
+  command.add_option("--profile", profile, "best: ours; paper: the published method with its constants")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"best", "paper"}));
+  command.add_option("--detector", detector, detector_help)->type_name("WHAT");
+  command
+      .add_option("--rate", rate_hz,
+                  "frames mapped a second, those in between are dropped; 0 = every frame (default: 1 for paper, 0 for best)")
+      ->type_name("HZ")
+      ->check(CLI::Range(0.0, 1000.0));
+  command.add_option("--frames", frames, "stops after N camera frames (0: all)")->type_name("N")->check(CLI::NonNegativeNumber);
+}
+
+MapperConfig MappingOptions::mapper_config() const {
+  MapperConfig config = MapperConfig::make(profile);
+  if (rate_hz) config.rate_hz = *rate_hz;
+  if (!detector || *detector == "truth") return config;
+  const std::filesystem::path path = *detector;
+  if (*detector == "yolo" || *detector == "none") {
+    config.detector = *detector;
+  } else if (path.extension() == ".json") {
+    config.detector = "boxes";
+    config.boxes = *detector;
+  } else if (std::filesystem::exists(path)) {
+    config.detector = "yolo";
+    config.model = *detector;
+  } else {
+    throw Error("--detector " + *detector + ": no such file; expected yolo, truth, none, a JSON file with boxes, or a model");
+  }
+  return config;
+}
+
+}  // namespace waretwin

@@ -1,0 +1,97 @@
+// waretwin run: simulate, map, score.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "harness/program/common_options.h"
+#include "harness/program/mapping_options.h"
+#include "harness/program/progress.h"
+#include "harness/run/run_folder.h"
+
+namespace waretwin {
+
+namespace {
+
+struct RunOptions {
+  CommonOptions common;
+  MappingOptions mapping;
+  std::string scenario, out;
+  std::string poses, depth = "sensor", association = "map";
+};
+
+RunConfig configure(const RunOptions& options) {
+  RunConfig config;
+  config.mapper = options.mapping.mapper_config();
+  config.truth_stages.detector = !options.mapping.detector || *options.mapping.detector == "truth";
+  config.truth_stages.poses = options.poses == "truth";
+  if (!options.poses.empty() && options.poses != "truth") config.mapper.poses = options.poses;
+  config.truth_stages.association = options.association == "truth";
+  config.simulation.truth_depth = options.depth == "truth";
+  config.simulation.max_frames = options.mapping.frames;
+  std::vector<Setting> settings;
+  if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
+  for (Setting& setting : options.common.settings()) settings.push_back(std::move(setting));
+  return load_run_config(options.scenario, std::move(config), settings);
+}
+
+std::string number(const char* pattern, const std::optional<double>& value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, pattern, value.value_or(0.0));
+  return value ? buffer : "-";
+}
+
+void print_summary(const char* name, const ScoreSummary& s) {
+  std::cout << name << ": " << s.matched << " of " << s.truth << " objects matched, " << s.mapped << " mapped, mean IoU "
+            << number("%.4f", s.mean_iou3d) << ", translation " << number("%.3f m", s.mean_e_trans_m) << ", yaw "
+            << number("%.2f deg", s.mean_e_rot_deg) << "\n";
+}
+
+int run(const RunOptions& options) {
+  options.common.apply();
+  const RunConfig config = configure(options);
+  RunFolder folder(options.out);
+  // First of all, so that a folder that cannot be written stops the run before the drive.
+  RunConfig resolved = config;
+  folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
+  if (!options.mapping.detector && config.truth_stages.detector) {
+    spdlog::info("boxes come from the truth: no detector model was named (--detector)");
+  }
+  ClosedLoopResult result;
+  {
+    Progress progress("run", options.common.quiet);
+    result = run_closed_loop(config, [&](double done, const ObjectMap& map) {
+      progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
+    });
+  }
+  write_closed_loop(folder, result);
+  print_summary("as mapped", result.score.objects.plain.summary);
+  if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
+  std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json)\n";
+  return 0;
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& program) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = program.add_subcommand("run", "closed loop: simulates a drive through a hall, maps it and scores the map");
+  command->add_option("SCENARIO", options->scenario, "scenario file")->required();
+  command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
+  options->mapping.add_to(*command,
+                          "truth: true boxes (the default until a model is shipped); none; yolo with --set mapper.model=FILE; a model's "
+                          "folder or file; a JSON file with boxes");
+  command->add_option("--poses", options->poses, "laser (default), odometry or truth")
+      ->check(CLI::IsMember({"laser", "odometry", "truth"}));
+  command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
+  command->add_option("--association", options->association, "map or truth")->capture_default_str()->check(CLI::IsMember({"map", "truth"}));
+  options->common.add_to(*command);
+  command->footer(
+      "Example:\n  waretwin run scenes/agiprobot/scenario.yaml --out out/agiprobot --profile paper --detector truth\n\n"
+      "`waretwin inspect SCENARIO --keys` lists every key for --set.");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace waretwin

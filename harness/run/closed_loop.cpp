@@ -1,0 +1,162 @@
+#include "harness/run/closed_loop.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "core/digest.h"
+#include "harness/truth/truth_associator.h"
+#include "harness/truth/truth_localiser.h"
+#include "mapper/integrate/tsdf_volume.h"
+#include "sim/ray_caster.h"
+#include "sim/visibility.h"
+
+namespace waretwin {
+
+namespace {
+
+Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream) {
+  MapperConfig mapper = config.mapper;
+  if (config.truth_stages.detector) mapper.detector = "none";
+  StreamInfo info = stream.info();
+  if (config.truth_stages.poses) {
+    // The localiser made here is replaced below: the stream need not have what it would read.
+    info.has_odometry = true;
+    mapper.poses = "odometry";
+  }
+  Stages stages = make_stages(mapper, info);
+  if (config.truth_stages.detector) stages.detector = std::make_unique<TruthDetector>(stream, config.truth_detector);
+  if (config.truth_stages.poses) stages.localiser = std::make_unique<TruthLocaliser>(stream);
+  if (config.truth_stages.association) stages.associator = std::make_unique<TruthAssociator>(stream, config.mapper.associate);
+  return stages;
+}
+
+std::map<std::string, std::string> stage_names(const RunConfig& config) {
+  return {{"detector", config.truth_stages.detector ? "truth" : config.mapper.detector},
+          {"poses", config.truth_stages.poses ? "truth" : config.mapper.poses},
+          {"association", config.truth_stages.association ? "truth" : "map"},
+          {"depth", config.simulation.truth_depth ? "truth" : "sensor"}};
+}
+
+void score_trajectories(const ClosedLoopResult& result, RunScore& score) {
+  std::vector<std::pair<Pose, Pose>> pairs;
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
+    pairs.emplace_back(result.trajectory[i].X_WB, result.true_trajectory[i].X_WB);
+  }
+  if (pairs.empty()) return;
+  score.trajectory = score_trajectory(pairs, TrajectoryAlignment::kNone);
+  score.trajectory_aligned = score_trajectory(pairs, TrajectoryAlignment::kSe3);
+}
+
+}  // namespace
+
+ClosedLoopResult run_closed_loop(const RunConfig& config, const std::function<void(double, const ObjectMap&)>& progress) {
+  const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
+  SimulatedStream stream(config.scenario, scene, config.simulation);
+  std::map<std::string, CameraConfig> cameras = config.scenario.sensors.cameras;
+  std::unique_ptr<SurfaceCoverage> coverage;
+  if (!cameras.empty() && !scene->objects.empty()) {
+    coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), std::move(cameras), config.scenario.robot);
+  }
+
+  MappingHooks hooks;
+  hooks.progress = progress;
+  hooks.on_frame = [&](const Mapper::FrameResult& frame) {
+    if (coverage) coverage->add_frame(frame.frame.sensor, stream.last_frame_truth().X_WC);
+  };
+  ClosedLoopResult result;
+  result.mapping = map_stream(stream, config.mapper, stages_with_truth(config, stream), config.simulation.max_frames, hooks);
+
+  const ObjectMap& map = result.mapping.map;
+  result.mapped = listed(map.objects);
+  for (const TrueObject& object : scene->objects) {
+    ListedObject truth;
+    truth.id = object.id;
+    truth.class_name = object.class_name;
+    truth.cuboid = object.cuboid;
+    truth.visible_fraction = coverage ? coverage->fraction(object.id) : 0.0;
+    result.truth.push_back(truth);
+  }
+  result.trajectory = stamped(map.trajectory);
+  for (const StampedPose& point : result.trajectory) result.true_trajectory.push_back({point.stamp, stream.true_X_WB(point.stamp)});
+
+  RunScore& score = result.score;
+  score.scenario = config.scenario.name;
+  score.profile = config.mapper.profile;
+  score.seed = config.scenario.seed;
+  score.digest = digest_of(map);
+  score.stages = stage_names(config);
+  score.objects = compare_lists(result.mapped, result.truth, config.score);
+  score_trajectories(result, score);
+  score.timing_ms = summarise_stages(result.mapping.frames);
+  score.frames_simulated = map.frames_seen;
+  score.frames_mapped = static_cast<int>(map.frames.size());
+  score.frames_dropped = map.frames_dropped_by_rate;
+  score.frames_without_pose = map.frames_without_pose;
+  score.rejected = map.rejected;
+  score.realtime_factor = result.mapping.wall_s > 0.0 ? result.mapping.stream_s / result.mapping.wall_s : 0.0;
+  score.peak_rss_mb = peak_rss_mb();
+  return result;
+}
+
+std::string digest_of(const ObjectMap& map) {
+  Digest digest;
+  for (const ListedObject& object : listed(map.objects)) {
+    digest.add(object.id);
+    digest.add(object.class_name);
+    for (const Eigen::Vector3d& v : {object.cuboid.centre, object.cuboid.size}) digest.add_bytes(v.data(), 3 * sizeof(double));
+    digest.add(object.cuboid.yaw);
+  }
+  for (const TrajectoryPoint& point : map.trajectory) {
+    digest.add(point.stamp);
+    const Eigen::Matrix4d X = point.X_WB.matrix();
+    digest.add_bytes(X.data(), 16 * sizeof(double));
+  }
+  if (map.volume) map.volume->add_to(digest);
+  return digest.hex();
+}
+
+std::vector<ListedObject> listed(const ObjectList& objects) {
+  std::vector<ListedObject> list;
+  for (const MappedObject& object : objects) {
+    ListedObject entry;
+    entry.id = object.id;
+    entry.class_name = object.class_name;
+    entry.cuboid = canonical(object.cuboid);
+    entry.score = static_cast<double>(object.score);
+    list.push_back(entry);
+  }
+  std::sort(list.begin(), list.end(), [](const ListedObject& a, const ListedObject& b) { return a.id < b.id; });
+  return list;
+}
+
+std::vector<StampedPose> stamped(const std::vector<TrajectoryPoint>& trajectory) {
+  std::vector<StampedPose> poses;
+  for (const TrajectoryPoint& point : trajectory) poses.push_back({point.stamp, point.X_WB});
+  return poses;
+}
+
+std::map<std::string, TimingSummary> summarise_stages(const std::vector<FrameRow>& frames) {
+  std::map<std::string, std::vector<double>> values;
+  for (const char* stage : {"simulate", "localise", "detect", "segment", "associate", "integrate", "frame"}) values[stage];
+  for (const FrameRow& row : frames) {
+    values["simulate"].push_back(row.source_ms);
+    values["localise"].push_back(row.report.localise_ms);
+    values["detect"].push_back(row.report.detect_ms);
+    values["segment"].push_back(row.report.segment_ms);
+    values["associate"].push_back(row.report.associate_ms);
+    values["integrate"].push_back(row.report.integrate_ms);
+    values["frame"].push_back(row.report.frame_ms());
+  }
+  std::map<std::string, TimingSummary> summaries;
+  for (const auto& [stage, list] : values) summaries[stage] = summarise_timing(list);
+  return summaries;
+}
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in kB
+}
+
+}  // namespace waretwin

@@ -1,0 +1,39 @@
+// The closed loop: scenario -> sensor stream -> mapper -> object map -> score.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "harness/pictures/map_pictures.h"
+#include "harness/run/mapping.h"
+#include "harness/run/run_config.h"
+#include "harness/score/run_score.h"
+
+namespace waretwin {
+
+struct ClosedLoopResult {
+  MappingResult mapping;
+  std::vector<ListedObject> mapped, truth;               // truth with the visible fractions
+  std::vector<StampedPose> trajectory, true_trajectory;  // at the same stamps
+  RunScore score;
+};
+
+// Drives the whole route (or simulation.max_frames camera frames) and scores the map. Throws Error for what the scenario or the
+// configuration lacks.
+ClosedLoopResult run_closed_loop(const RunConfig& config, const std::function<void(double, const ObjectMap&)>& progress = {});
+
+// Fingerprint of cuboids, trajectory and voxels: equal runs have equal ones, at any number of threads.
+std::string digest_of(const ObjectMap& map);
+
+// The mapped objects as the scorer compares them, in order of ids.
+std::vector<ListedObject> listed(const ObjectList& objects);
+
+std::vector<StampedPose> stamped(const std::vector<TrajectoryPoint>& trajectory);
+
+// Median, 95th percentile and maximum of every stage.
+std::map<std::string, TimingSummary> summarise_stages(const std::vector<FrameRow>& frames);
+
+// The most memory that the process has held so far, in MB of 2^20 bytes.
+double peak_rss_mb();
+
+}  // namespace waretwin

@@ -1,0 +1,22 @@
+// What mapping a recording depends on.
+#pragma once
+
+#include "core/fields.h"
+#include "mapper/mapper_config.h"
+#include "sensors/recordings/recording.h"
+
+namespace waretwin {
+
+struct MapConfig {
+  RecordingConfig recording;
+  MapperConfig mapper;
+  int frames = 0;
+
+  void visit(Fields& f) {
+    f.group("recording", recording, "how the recording is read");
+    f.group("mapper", mapper, "the mapper");
+    f("frames", frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+  }
+};
+
+}  // namespace waretwin

@@ -1,0 +1,42 @@
+// One drive through a stream: every event goes to the mapper, and what a report needs is kept on the way.
+#pragma once
+
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "mapper/mapper.h"
+#include "sensors/sensor_stream.h"
+
+namespace waretwin {
+
+// A mapped frame: the mapper's report and how long its pictures took to be made or read.
+struct FrameRow {
+  FrameReport report;
+  double source_ms = 0.0;
+};
+
+struct FramePicture {
+  std::string name;  // "frame-0012.colour"
+  cv::Mat image;     // BGR
+};
+
+struct MappingResult {
+  ObjectMap map;
+  std::vector<FrameRow> frames;
+  std::vector<FramePicture> pictures;  // of a few frames spread over the drive
+  double stream_s = 0.0;               // between the first and the last event
+  double wall_s = 0.0;
+};
+
+struct MappingHooks {
+  // After each event: share of the drive that is done in [0, 1] (0 where its length is unknown), and the map so far.
+  std::function<void(double, const ObjectMap&)> progress;
+  std::function<void(const Mapper::FrameResult&)> on_frame;
+};
+
+// Maps the stream to its end, or up to `max_frames` camera frames (0 = all).
+MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stages stages, int max_frames, const MappingHooks& hooks);
+
+}  // namespace waretwin

@@ -1,0 +1,45 @@
+// Everything that a closed-loop run depends on, as one configuration tree: the scenario's own keys at the top, the rest in groups.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "harness/score/object_score.h"
+#include "harness/truth/truth_detector.h"
+#include "mapper/mapper_config.h"
+#include "scenes/scenario.h"
+#include "sim/simulated_stream.h"
+
+namespace waretwin {
+
+// Stages of the mapper that the truth stands in for. True depth is simulation.truth_depth.
+struct TruthStages {
+  bool detector = true;
+  bool poses = false;
+  bool association = false;
+  void visit(Fields& f);
+};
+
+struct RunConfig {
+  Scenario scenario;
+  MapperConfig mapper;
+  SimulationConfig simulation;
+  TruthStages truth_stages;
+  TruthDetectorConfig truth_detector;
+  ScoringRules score;
+
+  void visit(Fields& f);
+  // All but the scenario's own keys.
+  void visit_groups(Fields& f);
+};
+
+// Reads a scenario and applies settings to the whole tree; `base` holds everything but the scenario. Throws Error for a key that the tree
+// does not have, naming the nearest one.
+RunConfig load_run_config(const std::filesystem::path& scenario, RunConfig base, const std::vector<Setting>& settings);
+
+// The resolved configuration as YAML, with the program's version: config.yaml.
+std::string resolved_config(const VisitFunction& visit, const std::string& source);
+
+}  // namespace waretwin

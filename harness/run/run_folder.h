@@ -1,0 +1,50 @@
+// The folder that a run leaves behind. Files of an earlier run are replaced one by one, each whole; score.json goes first and comes back
+// last, so that a folder with a score is a complete one.
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "harness/run/closed_loop.h"
+#include "harness/run/report.h"
+
+namespace waretwin {
+
+class RunFolder {
+ public:
+  // Makes the folder and takes the score and the report of an earlier run away. Throws Error where that cannot be.
+  explicit RunFolder(const std::filesystem::path& path);
+
+  // Both create the folders in `name` that are missing.
+  void write(const std::string& name, const std::string& bytes);
+  void write_png(const std::string& name, const cv::Mat& image);
+  std::filesystem::path file(const std::string& name);
+  const std::filesystem::path& path() const { return path_; }
+
+  // Empties a folder of files of an earlier run (objects, frames).
+  void clear(const std::string& name);
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Metres above the floor beyond which pictures cut the map off, so that a ceiling does not hide the hall.
+inline constexpr double kPictureCeiling = 2.5;
+
+// All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, pictures of `scene`, which gets the mesh of the map.
+// Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy and
+// map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.
+// Returns the pictures for the report.
+std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene);
+
+// The same with truth, Table 6, report.html, and score.json at the very end.
+void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result);
+
+// What `waretwin map` leaves behind: write_map and report.html.
+void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile);
+
+// A row a mapped frame.
+std::string timing_csv(const std::vector<FrameRow>& frames);
+
+}  // namespace waretwin

@@ -1,0 +1,82 @@
+#include "harness/truth/truth_detector.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "core/error.h"
+
+namespace waretwin {
+
+namespace {
+
+struct Extent {
+  int low_u = std::numeric_limits<int>::max(), low_v = std::numeric_limits<int>::max();
+  int high_u = -1, high_v = -1;
+  int pixels = 0, depth_pixels = 0;
+
+  cv::Rect2f box() const {
+    return {static_cast<float>(low_u), static_cast<float>(low_v), static_cast<float>(high_u - low_u + 1),
+            static_cast<float>(high_v - low_v + 1)};
+  }
+};
+
+// Area in pixels of the box around the whole cuboid as projected, also beyond the picture; infinite where a corner is behind the camera.
+double projected_area(const Cuboid& cuboid, const Intrinsics& intrinsics, const Pose& X_WC) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner_W : cuboid.corners()) {
+    const Eigen::Vector3d corner_C = X_WC.inverse() * corner_W;
+    if (corner_C.z() <= 0.05) return std::numeric_limits<double>::infinity();
+    box.extend(intrinsics.project(corner_C));
+  }
+  return box.volume();
+}
+
+}  // namespace
+
+void TruthDetectorConfig::visit(Fields& f) {
+  f("min_pixels", min_pixels, "objects with fewer pixels in the picture get no box", {.min = 1, .max = 1e9});
+  f("min_depth_pixels", min_depth_pixels, "objects with fewer pixels that have depth get no box", {.min = 0, .max = 1e9});
+  f("min_visible_share", min_visible_share,
+    "visible box's area over the area of the whole object's box, parts beyond the picture included; below: no box", {.min = 0, .max = 1});
+}
+
+std::vector<Detection> boxes_from_instances(const cv::Mat& instances, const cv::Mat& depth, const std::vector<TrueObject>& objects,
+                                            const Intrinsics& intrinsics, const Pose& X_WC, const TruthDetectorConfig& config) {
+  WARETWIN_CHECK(instances.type() == CV_16UC1 && depth.type() == CV_32FC1 && instances.size() == depth.size(), "images of one frame");
+  std::map<int, Extent> extents;
+  for (int v = 0; v < instances.rows; ++v) {
+    const auto* ids = instances.ptr<std::uint16_t>(v);
+    const auto* metres = depth.ptr<float>(v);
+    for (int u = 0; u < instances.cols; ++u) {
+      if (ids[u] == 0) continue;
+      Extent& extent = extents[ids[u]];
+      extent.low_u = std::min(extent.low_u, u);
+      extent.high_u = std::max(extent.high_u, u);
+      extent.low_v = std::min(extent.low_v, v);
+      extent.high_v = std::max(extent.high_v, v);
+      ++extent.pixels;
+      extent.depth_pixels += metres[u] > 0.0f ? 1 : 0;
+    }
+  }
+  std::vector<Detection> detections;
+  for (const TrueObject& object : objects) {
+    const auto found = extents.find(object.id);
+    if (found == extents.end()) continue;
+    const Extent& extent = found->second;
+    if (extent.pixels < config.min_pixels || extent.depth_pixels < config.min_depth_pixels) continue;
+    const cv::Rect2f box = extent.box();
+    if (static_cast<double>(box.area()) < config.min_visible_share * projected_area(object.cuboid, intrinsics, X_WC)) continue;
+    detections.push_back({object.class_name, box, 1.0f});
+  }
+  return detections;
+}
+
+std::vector<Detection> TruthDetector::detect(const RgbdFrame& frame) {
+  const FrameTruth& truth = stream_.last_frame_truth();
+  WARETWIN_CHECK(truth.stamp == frame.stamp && truth.sensor == frame.sensor, "the truth detector is asked for the stream's newest frame");
+  return boxes_from_instances(truth.instances, frame.depth, stream_.scene().objects, stream_.info().cameras.at(frame.sensor).intrinsics,
+                              truth.X_WC, config_);
+}
+
+}  // namespace waretwin
