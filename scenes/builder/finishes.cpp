@@ -164,6 +164,14 @@ Finish wall_paint() {
   return textured(t, 2.5, 2.5, 0, 0.9, 0.7);
 }
 
+Finish grey_wall() {
+  cv::Mat t = mottled(512, 512, {182, 180, 176}, 3, 2, "grey wall");
+  // Seams of the wall panels.
+  for (const int x : {0, 256}) cv::line(t, {x, 0}, {x, 511}, {158, 156, 152}, 3);
+  add_scratches(t, 20, 40, {160, 160, 158}, 0.4, "grey wall");
+  return textured(t, 2.0, 2.0, 0, 0.85, 0.6);
+}
+
 Finish fabric(const std::string& key, const Scalar& bgr) {
   cv::Mat t = mottled(128, 128, bgr, 6, 14, key);
   for (int k = 0; k < 128; k += 4) {

@@ -23,7 +23,7 @@ int add_pallet(Kit& kit, int parent, const Placement& at) {
 
 int add_carton(Kit& kit, int parent, const Placement& at, double dx, double dy, double dz) {
   return kit.place("carton", parent, at, "carton_" + in_mm({dx, dy, dz}), [&](MeshDraft& draft) {
-    draft.add(kit.material("cardboard"), standing_box(dx, dy, dz, 0.003));
+    draft.add(kit.material("cardboard"), standing_box(dx, dy, dz));
     draft.add(kit.material("packing_tape"), standing_box(dx + 0.001, 0.05, dz + 0.0008));
     draft.add(kit.material("label_parcel"), picture({dx * 0.1, -dy / 2 - 0.001, dz * 0.25}, {0.10, 0, 0}, {0, 0, 0.15}));
     draft.add(kit.material("label_parcel"), picture({-dx * 0.1, dy / 2 + 0.001, dz * 0.25}, {-0.10, 0, 0}, {0, 0, 0.15}));
