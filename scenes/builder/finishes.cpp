@@ -205,10 +205,7 @@ const std::map<std::string, Recipe>& recipes() {
       {"hazard_tape", hazard_tape},
       {"yellow_tape", yellow_tape},
       {"wall_paint", wall_paint},
-      {"wall_grey",
-       [] {
-         return painted("wall grey", {176, 174, 170}, 0.85, 0.6, 6);
-       }},
+      {"wall_grey", grey_wall},
       {"ceiling",
        [] {
          return plain({0.93, 0.93, 0.92}, 0, 0.95, 0.7);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/pose.h"
+#include "core/random.h"
 #include "scenes/builder/halls.h"
 #include "scenes/scenario.h"
 #include "tests/support/test_data.h"
@@ -107,7 +108,8 @@ TEST_P(ShippedHall, LoadsWithoutNotesAndIsModerate) {
   EXPECT_LT(hall.scene.triangle_count(), 400'000u);
   EXPECT_GE(hall.scene.lights.size(), 6u);
   for (const Light& light : hall.scene.lights) EXPECT_GT(light.radius, 0.1f) << light.name;
-  for (const Material& material : hall.scene.materials) {
+  for (const Mesh& mesh : hall.scene.meshes) {
+    const Material& material = hall.scene.materials[static_cast<std::size_t>(mesh.material)];
     EXPECT_GE(material.reflectivity_850nm, 0.05f) << material.name;
     EXPECT_LE(material.reflectivity_850nm, 0.95f) << material.name;
   }

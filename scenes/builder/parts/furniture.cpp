@@ -1,5 +1,6 @@
 #include "scenes/builder/parts/furniture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/pose.h"
@@ -219,18 +220,19 @@ int add_stool(Kit& kit, int parent, const Placement& at) {
 int add_leaning_panel(Kit& kit, int parent, const Placement& at, double width, double height, double thickness, double lean_deg,
                       const std::string& finish) {
   return kit.place("panel", parent, at, "panel_" + finish + in_mm({width, height, thickness, lean_deg}), [&](MeshDraft& draft) {
-    // Turned about its lower back edge, so that it rests on the floor.
-    draft.add(kit.material(finish), standing_box(width, thickness, height, 0.001)
-                                        .move(0, -thickness / 2, 0)
-                                        .rotate(Vector3d::UnitX(), -lean_deg)
-                                        .move(0, 0, thickness * std::sin(to_radians(lean_deg))));
+    // Turned about the lower edge that it rests on.
+    draft.add(kit.material(finish),
+              standing_box(width, thickness, height, 0.001).move(0, -thickness / 2, 0).rotate(Vector3d::UnitX(), -lean_deg));
   });
 }
 
 int add_cable(Kit& kit, int parent, const std::string& name, const std::vector<Vector3d>& points, double radius,
               const std::string& finish) {
-  return kit.place(name, parent, {}, name,
-                   [&](MeshDraft& draft) { draft.add(kit.material(finish), tube(smooth_path(points, 6), radius, 6)); });
+  return kit.place(name, parent, {}, name, [&](MeshDraft& draft) {
+    std::vector<Vector3d> path = smooth_path(points, 6);
+    for (Vector3d& p : path) p.z() = std::max(p.z(), radius);  // the curve may swing below the floor
+    draft.add(kit.material(finish), tube(path, radius, 6));
+  });
 }
 
 int add_tools(Kit& kit, int parent, const Placement& at) {
