@@ -136,8 +136,8 @@ int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorCon
       draft.add(kit.material("galvanised"), standing_box(0.04, c.width - 0.08, 0.05).move(x, 0, rail_top - 0.17));
     }
     // The drive below the frame.
-    draft.add(kit.material("black_paint"), bevelled_box(0.26, 0.16, 0.14, 0.01).move(0.2, 0, rail_top - 0.26));
-    draft.add(kit.material("light_grey_paint"), bevelled_box(0.16, 0.03, 0.10, 0.006).move(-0.3, -(c.width / 2 - 0.045), rail_top - 0.21));
+    draft.add(kit.material("black_paint"), bevelled_box(0.26, 0.16, 0.14, 0.01).move(0.2, 0, rail_top - 0.19));
+    draft.add(kit.material("light_grey_paint"), bevelled_box(0.16, 0.03, 0.10, 0.006).move(-0.3, -(c.width / 2 - 0.015), rail_top - 0.17));
   });
   if (c.rollers) {
     const int count = std::max(2, static_cast<int>(c.length / c.roller_pitch));
