@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -48,6 +49,10 @@ int run(int argc, char** argv) {
     program.exit(request);
     return kSuccess;
   } catch (const CLI::ParseError& error) {
+    const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
+    if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
+      return fail(kBadInput, "command '" + std::string(argv[1]) + "' is not known; expected run, map, score, render or inspect");
+    }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }
   for (const waretwin::Command& command : commands) {

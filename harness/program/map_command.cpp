@@ -33,6 +33,7 @@ int map(const MapOptions& options) {
   apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
 
   const auto stream = open_recording(options.recording, config.recording);
+  Stages stages = make_stages(config.mapper, stream->info());
   RunFolder folder(options.out);
   MapConfig resolved = config;
   folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "recording " + options.recording));
@@ -44,7 +45,7 @@ int map(const MapOptions& options) {
     hooks.progress = [&](double done, const ObjectMap& map) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     };
-    result = map_stream(*stream, config.mapper, make_stages(config.mapper, stream->info()), config.frames, hooks);
+    result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks);
   }
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
   write_mapping(folder, result, options.recording, config.mapper.profile);

@@ -52,6 +52,7 @@ void print_summary(const char* name, const ScoreSummary& s) {
 int run(const RunOptions& options) {
   options.common.apply();
   const RunConfig config = configure(options);
+  const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
   RunFolder folder(options.out);
   // First of all, so that a folder that cannot be written stops the run before the drive.
   RunConfig resolved = config;
@@ -62,7 +63,7 @@ int run(const RunOptions& options) {
   ClosedLoopResult result;
   {
     Progress progress("run", options.common.quiet);
-    result = run_closed_loop(config, [&](double done, const ObjectMap& map) {
+    result = run_closed_loop(config, scene, [&](double done, const ObjectMap& map) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     });
   }

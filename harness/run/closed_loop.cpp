@@ -50,8 +50,8 @@ void score_trajectories(const ClosedLoopResult& result, RunScore& score) {
 
 }  // namespace
 
-ClosedLoopResult run_closed_loop(const RunConfig& config, const std::function<void(double, const ObjectMap&)>& progress) {
-  const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
+ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
+                                 const std::function<void(double, const ObjectMap&)>& progress) {
   SimulatedStream stream(config.scenario, scene, config.simulation);
   std::map<std::string, CameraConfig> cameras = config.scenario.sensors.cameras;
   std::unique_ptr<SurfaceCoverage> coverage;

@@ -18,9 +18,11 @@ struct ClosedLoopResult {
   RunScore score;
 };
 
-// Drives the whole route (or simulation.max_frames camera frames) and scores the map. Throws Error for what the scenario or the
+// Drives the whole route (or simulation.max_frames camera frames) through `scene`, which is config.scenario's (build_scene), and scores the
+// map. Throws Error for what the scenario or the
 // configuration lacks.
-ClosedLoopResult run_closed_loop(const RunConfig& config, const std::function<void(double, const ObjectMap&)>& progress = {});
+ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
+                                 const std::function<void(double, const ObjectMap&)>& progress = {});
 
 // Fingerprint of cuboids, trajectory and voxels: equal runs have equal ones, at any number of threads.
 std::string digest_of(const ObjectMap& map);

@@ -32,10 +32,15 @@ inline std::string agiprobot() { return "'" + (repository() / "scenes/agiprobot/
 }  // namespace waretwin::test
 
 // Bad input: exit code 2 and one line that begins with the program's name and holds `text`.
-#define EXPECT_ONE_LINE(result, text)                                      \
-  do {                                                                     \
-    EXPECT_EQ((result).exit_code, 2) << (result).err;                      \
-    EXPECT_EQ((result).error_lines(), 1) << (result).err;                  \
-    EXPECT_TRUE((result).err.starts_with("waretwin: ")) << (result).err;   \
-    EXPECT_NE((result).err.find(text), std::string::npos) << (result).err; \
+inline void expect_one_line(const waretwin::test::ProgramResult& result, const std::string& text) {
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_EQ(result.error_lines(), 1) << result.err;
+  EXPECT_TRUE(result.err.starts_with("waretwin: ")) << result.err;
+  EXPECT_NE(result.err.find(text), std::string::npos) << "expected '" << text << "' in: " << result.err;
+}
+
+#define EXPECT_ONE_LINE(result, text) \
+  do {                                \
+    SCOPED_TRACE(#result);            \
+    expect_one_line(result, text);    \
   } while (false)
