@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -30,6 +31,10 @@ int map(const MapOptions& options) {
   config.mapper = options.mapping.mapper_config();
   if (!options.poses.empty()) config.mapper.poses = options.poses;
   config.frames = options.mapping.frames;
+  // Other people's worlds have their zero anywhere, often at the first camera; our own recordings have it on the floor.
+  if (!std::filesystem::exists(std::filesystem::path(options.recording) / "recording.yaml")) {
+    config.mapper.segment.planes.ground = "lowest_plane";
+  }
   apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
 
   const auto stream = open_recording(options.recording, config.recording);
@@ -54,6 +59,7 @@ int map(const MapOptions& options) {
     const Cuboid& c = object.cuboid;
     std::cout << object.id << " " << object.class_name << " at " << c.centre.transpose() << " size " << c.size.transpose() << "\n";
   }
+  for (const auto& [reason, count] : result.map.rejected) spdlog::info("not segmented: {}, {} times", reason, count);
   std::cout << result.map.frames.size() << " of " << result.map.frames_seen << " frames mapped, " << result.map.objects.size()
             << " objects, digest " << digest_of(result.map) << "\nresults in " << options.out << " (report.html, map.glb, cuboids.json)\n";
   return 0;
@@ -73,6 +79,7 @@ Command add_map_command(CLI::App& program) {
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n\n"
+      "The ground is the lowest horizontal plane (mapper.segment.planes.ground); in recordings with a recording.yaml it is at height 0.\n"
       "`waretwin inspect RECORDING --keys` lists every key for --set.");
   return {command, [options] { return map(*options); }};
 }

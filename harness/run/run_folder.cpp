@@ -49,6 +49,17 @@ std::string text(const char* pattern, double value) {
   return buffer;
 }
 
+// Height beyond which pictures cut the map off, so that a ceiling does not hide the hall: 2.5 m above the lowest half percent of vertices.
+double picture_ceiling(const SurfaceMesh& mesh) {
+  constexpr double kHeight = 2.5;
+  if (mesh.vertices.empty()) return kHeight;
+  std::vector<float> heights;
+  for (const Eigen::Vector3f& p : mesh.vertices) heights.push_back(p.z());
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 200);
+  std::nth_element(heights.begin(), low, heights.end());
+  return static_cast<double>(*low) + kHeight;
+}
+
 const std::vector<std::string> kMapFiles = {"cuboids.json",  "map.glb",        "map.ply",        "cloud.ply",  "map.waretwin",
                                             "occupancy.pgm", "occupancy.yaml", "trajectory.tum", "timing.csv", "config.yaml"};
 
@@ -121,13 +132,14 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   folder.write("trajectory.tum", tum_text(trajectory));
   folder.write("timing.csv", timing_csv(mapping.frames));
 
+  const double ceiling = picture_ceiling(mesh);
   scene.mesh = {mesh.vertices, mesh.colours, mesh.triangles};
   scene.labels = mesh.labels;
   std::vector<ReportPicture> pictures;
   pictures.push_back({"The map from above, with mapped cuboids" + std::string(scene.truth.empty() ? "" : ", true ones") + " and the path",
-                      draw_from_above(scene, kPictureCeiling)});
+                      draw_from_above(scene, ceiling)});
   folder.write_png("topdown.png", pictures.back().image);
-  pictures.push_back({"The mapped mesh, objects in colours of their own", draw_oblique(scene, kPictureCeiling)});
+  pictures.push_back({"The mapped mesh, objects in colours of their own", draw_oblique(scene, ceiling)});
   folder.write_png("mesh.png", pictures.back().image);
   folder.clear("frames");
   for (const FramePicture& picture : mapping.pictures) folder.write_png("frames/" + picture.name + ".png", picture.image);

@@ -29,9 +29,6 @@ class RunFolder {
   std::filesystem::path path_;
 };
 
-// Metres above the floor beyond which pictures cut the map off, so that a ceiling does not hide the hall.
-inline constexpr double kPictureCeiling = 2.5;
-
 // All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, pictures of `scene`, which gets the mesh of the map.
 // Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy and
 // map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.

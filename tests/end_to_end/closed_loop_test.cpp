@@ -50,12 +50,14 @@ TEST(ClosedLoop, MapsTheAgiProbotHallAsThePaperDoes) {
 
 TEST(ClosedLoop, GivesTheSameDigestAtAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  const std::string options = "--profile paper --detector truth --frames 46 --threads ";
+  const std::string options = "--profile paper --detector truth --frames 91 --threads ";
   const Json one = run(options + "1", folder.path() / "1");
   const Json two = run(options + "2", folder.path() / "2");
   const Json four = run(options + "4", folder.path() / "4");
   ASSERT_TRUE(one.is_object() && two.is_object() && four.is_object());
-  EXPECT_GE(one["frames"]["mapped"].get<int>(), 3);
+  EXPECT_GE(one["frames"]["mapped"].get<int>(), 6);
+  EXPECT_FALSE(Json::parse(read_file(folder.path() / "1/cuboids.json"))["objects"].empty())
+      << "the drive must be long enough to map an object";
   EXPECT_EQ(one["digest"], two["digest"]);
   EXPECT_EQ(one["digest"], four["digest"]);
   EXPECT_EQ(read_file(folder.path() / "1/cuboids.json"), read_file(folder.path() / "4/cuboids.json"));
@@ -82,6 +84,19 @@ TEST(ClosedLoop, PutsTheTruthInPlaceOfStages) {
   EXPECT_NEAR(score["trajectory"]["ate_max_m"].get<double>(), 0.0, 1e-9);
   EXPECT_EQ(score["stages"]["depth"], "truth");
   EXPECT_EQ(score["stages"]["association"], "truth");
+}
+
+TEST(ClosedLoop, FindsAChairInAKitchen) {
+  WARETWIN_NEED_DATA("rgbd_7scenes");
+  WARETWIN_NEED_DATA("yolo_fastest");
+  const TemporaryFolder folder;
+  const auto result =
+      test::waretwin("map '" + test::shared_data("rgbd_7scenes").string() + "' --quiet --out '" + folder.path().string() +
+                     "' --detector '" + test::shared_data("yolo_fastest").string() + "' --set mapper.detect.confidence=0.3");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("60 of 60 frames mapped"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(" chair at "), std::string::npos) << result.out;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "upright.json")) << "this world's y axis points down";
 }
 
 TEST(ClosedLoop, MapsARecordingOfARealCamera) {
