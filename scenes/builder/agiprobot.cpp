@@ -55,6 +55,7 @@ struct Station {
   int number;
   double x, y, yaw_deg;
   TableTopConveyor conveyor;
+  // No whole degrees: the mapper searches headings in such steps, and must not be flattered by the hall.
   double conveyor_x, conveyor_yaw_deg;
 };
 
@@ -75,7 +76,7 @@ int add_station(Kit& kit, int hall, const Station& s) {
 }
 
 void add_station_1(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {1, -1.7, -2.03, 180, {.length = 0.60, .width = 0.40, .height = 0.15}, 0.0, 3.0});
+  const int s = add_station(kit, hall, {1, -1.7, -2.03, 180, {.length = 0.60, .width = 0.40, .height = 0.15}, 0.0, 3.37});
   add_table(kit, s, {-0.87, 0.02, 0, 0}, {.width = 0.8, .depth = 0.7, .shelf = true});
   add_robot_arm(kit, s, {-0.80, 0.10, 0.75, 0}, {.base_deg = -25, .shoulder_deg = 18, .elbow_deg = 82, .wrist_deg = 70});
   add_bin(kit, s, {-1.10, -0.17, 0.75, -8}, 0.22, 0.32, 0.14, "bin_green", true);
@@ -100,7 +101,7 @@ void add_station_1(Kit& kit, int hall) {
 }
 
 void add_station_2(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {2, 1.5, -2.05, 180, {.length = 0.64, .width = 0.40, .height = 0.15, .rollers = true}, 0.0, -4.0});
+  const int s = add_station(kit, hall, {2, 1.5, -2.05, 180, {.length = 0.64, .width = 0.40, .height = 0.15, .rollers = true}, 0.0, -4.41});
   add_table(kit, s, {-0.95, 0.05, 0, 2}, {.width = 0.9, .depth = 0.65, .top = "beech"});
   add_monitor(kit, s, {-0.95, 0.17, 0.75, -14}, "screen_status");
   add_keyboard(kit, s, {-0.98, -0.12, 0.75, -6});
@@ -119,7 +120,7 @@ void add_station_2(Kit& kit, int hall) {
 }
 
 void add_station_3(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {3, 1.8, 2.03, 0, {.length = 0.58, .width = 0.38, .height = 0.15}, -0.01, 4.0});
+  const int s = add_station(kit, hall, {3, 1.8, 2.03, 0, {.length = 0.58, .width = 0.38, .height = 0.15}, -0.01, 4.63});
   add_cabinet(kit, s, {-0.86, 0.03, 0, -1}, {.width = 0.8, .depth = 0.6, .height = 0.75, .drawers = true});
   add_robot_arm(kit, s, {-0.83, 0.12, 0.75, 0}, {.base_deg = -60, .shoulder_deg = -12, .elbow_deg = 110, .wrist_deg = 55});
   add_bin(kit, s, {-1.09, -0.12, 0.75, 6}, 0.20, 0.28, 0.12, "bin_green", true);
@@ -138,7 +139,7 @@ void add_station_3(Kit& kit, int hall) {
 }
 
 void add_station_4(Kit& kit, int hall) {
-  const int s = add_station(kit, hall, {4, -1.5, 2.05, 0, {.length = 0.62, .width = 0.42, .height = 0.16, .rollers = true}, 0.01, -7.0});
+  const int s = add_station(kit, hall, {4, -1.5, 2.05, 0, {.length = 0.62, .width = 0.42, .height = 0.16, .rollers = true}, 0.01, -6.58});
   add_table(kit, s, {-0.92, 0.05, 0, -2}, {.width = 0.9, .depth = 0.7});
   add_laptop(kit, s, {-0.85, 0.0, 0.75, 18});
   add_book_stack(kit, s, {-1.2, 0.15, 0.75, 25});
