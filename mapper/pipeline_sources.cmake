@@ -1,1 +1,0 @@
-set(MAPPER_PIPELINE_SOURCES mapper.cpp mapper_config.cpp stages.cpp)

@@ -1,1 +1,0 @@
-set(MAPPER_PIPELINE_TESTS mapper_test.cpp mapper_config_test.cpp)
