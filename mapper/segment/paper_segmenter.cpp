@@ -145,7 +145,7 @@ std::optional<SupportPlane> PaperSegmenter::support_of(const Context& context, c
     }
   }
   const double ground = std::isfinite(levels.ground) ? levels.ground : config_.planes.ground_height_m;
-  return find_support(samples, box, levels.horizontal, ground, config_.planes);
+  return find_support(samples, levels.horizontal, ground, config_.planes);
 }
 
 std::string PaperSegmenter::segment_one(const Context& context, const Levels& levels, const std::vector<char>& taken,

@@ -24,7 +24,7 @@ struct PlaneConfig {
   double clearance_max_m = 0.03;        // 3 sigma being held between these two
   double support_ring = 0.25;           // how far around the 2D box the support is looked for, as a share of the box's size
   double support_ring_fraction = 0.06;  // share of the ring's pixels that a support must fill
-  double support_coverage = 0.6;        // share of the 2D box that the points above a support must span
+  double support_coverage = 0.6;        // share of the box's part with depth that the points above a support must span
 
   void visit(Fields& f) {
     f("stride", stride, "planes are sought in every n-th row and column", {.min = 1, .max = 64});
@@ -45,7 +45,8 @@ struct PlaneConfig {
     f("support_ring", support_ring, "width of the ring around a box in which its support is looked for, relative to the box",
       {.min = 0.01, .max = 2});
     f("support_ring_fraction", support_ring_fraction, "share of that ring that the support fills at least", {.min = 0, .max = 1});
-    f("support_coverage", support_coverage, "share of the box that the points above the support span at least", {.min = 0, .max = 1});
+    f("support_coverage", support_coverage, "share of the box's part with depth that the points above the support span at least",
+      {.min = 0, .max = 1});
   }
 };
 

@@ -37,19 +37,8 @@ std::vector<double> ring_peaks(const std::vector<HeightSample>& samples, double 
   return peaks;
 }
 
-// Share of the box that the middle 96 % of the samples above `height` span.
-double coverage_above(const std::vector<HeightSample>& samples, const cv::Rect2f& box, double height, double& share_above,
-                      double ground_height) {
-  std::vector<float> us, vs;
-  int off_ground = 0;
-  for (const HeightSample& sample : samples) {
-    if (!sample.in_box) continue;
-    if (sample.height > ground_height) ++off_ground;
-    if (sample.height <= height) continue;
-    us.push_back(sample.u);
-    vs.push_back(sample.v);
-  }
-  share_above = off_ground > 0 ? static_cast<double>(us.size()) / off_ground : 0.0;
+// Width times height of the middle 96 % of some pixels; reorders them.
+double spanned_area(std::vector<float>& us, std::vector<float>& vs) {
   if (us.size() < 10) return 0.0;
   const auto span = [](std::vector<float>& values) {
     const auto at = [&](double order) {
@@ -60,7 +49,25 @@ double coverage_above(const std::vector<HeightSample>& samples, const cv::Rect2f
     const float high = at(0.98);
     return high - at(0.02);
   };
-  return span(us) * span(vs) / std::max(1.0f, box.area());
+  return span(us) * span(vs);
+}
+
+// What the samples above `height` span, as a share of what all samples of the box span. Not of the box itself: where the depth field
+// cuts through the box, a support must still be found for the part with depth.
+double coverage_above(const std::vector<HeightSample>& samples, double height, double& share_above, double ground_height) {
+  std::vector<float> us, vs, all_us, all_vs;
+  int off_ground = 0;
+  for (const HeightSample& sample : samples) {
+    if (!sample.in_box) continue;
+    all_us.push_back(sample.u);
+    all_vs.push_back(sample.v);
+    if (sample.height > ground_height) ++off_ground;
+    if (sample.height <= height) continue;
+    us.push_back(sample.u);
+    vs.push_back(sample.v);
+  }
+  share_above = off_ground > 0 ? static_cast<double>(us.size()) / off_ground : 0.0;
+  return spanned_area(us, vs) / std::max(1.0, spanned_area(all_us, all_vs));
 }
 
 }  // namespace
@@ -84,8 +91,8 @@ SupportPlane refine_level(const std::vector<HeightSample>& samples, double heigh
   return level;
 }
 
-std::optional<SupportPlane> find_support(const std::vector<HeightSample>& samples, const cv::Rect2f& box, const std::vector<double>& levels,
-                                         double ground_height, const PlaneConfig& config) {
+std::optional<SupportPlane> find_support(const std::vector<HeightSample>& samples, const std::vector<double>& levels, double ground_height,
+                                         const PlaneConfig& config) {
   const auto in_ring = std::count_if(samples.begin(), samples.end(), [](const HeightSample& s) { return !s.in_box; });
   const double fewest = std::max(10.0, config.support_ring_fraction * static_cast<double>(in_ring));
   const double lowest = ground_height + config.ground_tolerance_m;
@@ -102,7 +109,7 @@ std::optional<SupportPlane> find_support(const std::vector<HeightSample>& sample
                                      [&](const HeightSample& s) { return !s.in_box && std::abs(s.height - level.height) <= clearance; });
     if (static_cast<double>(count) < fewest || count <= best_count) continue;
     double share_above = 0.0;
-    const double coverage = coverage_above(samples, box, level.height + clearance, share_above, lowest);
+    const double coverage = coverage_above(samples, level.height + clearance, share_above, lowest);
     if (coverage < config.support_coverage || share_above < kLeastAbove) continue;
     best = level;
     best_count = count;

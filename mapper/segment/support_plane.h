@@ -1,7 +1,6 @@
 // Which horizontal plane a detected object stands on.
 #pragma once
 
-#include <opencv2/core/types.hpp>
 #include <optional>
 #include <vector>
 
@@ -28,9 +27,10 @@ SupportPlane refine_level(const std::vector<HeightSample>& samples, double heigh
 // the frame's multi-plane segmentation) and peaks in the heights of the ring, which find a strip too narrow to be segmented: a level
 // surface piles its points up at one height, a wall spreads them. A support
 //   - goes on beyond the object: it fills a share of the ring around the box (its own top, a belt or a seat, ends with the box);
-//   - carries the object: what lies above it within the box spans most of the box (parcels on a belt do not, nor does a chair's back).
+//   - carries the object: what lies above it within the box spans most of what has depth there (parcels on a belt do not, nor does a
+//   chair's back).
 // Of several the one that fills most of the ring is taken.
-std::optional<SupportPlane> find_support(const std::vector<HeightSample>& samples, const cv::Rect2f& box, const std::vector<double>& levels,
-                                         double ground_height, const PlaneConfig& config);
+std::optional<SupportPlane> find_support(const std::vector<HeightSample>& samples, const std::vector<double>& levels, double ground_height,
+                                         const PlaneConfig& config);
 
 }  // namespace waretwin
