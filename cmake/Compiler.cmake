@@ -17,7 +17,12 @@ target_compile_options(waretwin_flags INTERFACE
   # GCC 12 sees overlapping copies in std::string's own operator+ (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Fused multiply-add changes last bits from one CPU to the next; a run must not.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nobody reads errno or floating-point flags: square roots and roundings become single instructions.
+  -fno-math-errno -fno-trapping-math)
+if(WARETWIN_ARCH)
+  target_compile_options(waretwin_flags INTERFACE -march=${WARETWIN_ARCH})
+endif()
 if(WARETWIN_WERROR)
   target_compile_options(waretwin_flags INTERFACE -Werror)
 endif()

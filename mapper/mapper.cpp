@@ -48,7 +48,8 @@ std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const s
 
 }  // namespace
 
-Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info) : config_(config), stages_(std::move(stages)), info_(info) {
+Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info)
+    : config_(config), stages_(std::move(stages)), info_(info) {
   X_WR_ = world_from_recording(info);
   map_.X_RW = X_WR_.inverse();
   map_.volume = std::make_unique<TsdfVolume>(config.integrate);
@@ -99,7 +100,8 @@ void Mapper::take(RgbdFrame frame) {
     return;
   }
   const auto camera = info_.cameras.find(frame.sensor);
-  if (camera == info_.cameras.end()) throw Error(info_.source + ": a frame of camera '" + frame.sensor + "', which the stream does not name");
+  if (camera == info_.cameras.end())
+    throw Error(info_.source + ": a frame of camera '" + frame.sensor + "', which the stream does not name");
   if (frame.recorded_X_WC) frame.recorded_X_WC = X_WR_ * *frame.recorded_X_WC;
 
   FrameReport report;

@@ -27,7 +27,8 @@ void MapperConfig::visit(Fields& f) {
   f("rate_hz", rate_hz, "frames mapped a second, those in between are dropped; 0 = every frame", {.min = 0, .max = 1000});
   f("poses", poses, "where the vehicle's poses come from; auto: laser, else recorded, else odometry",
     {.choices = {"auto", "laser", "odometry", "recorded"}});
-  f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere", {.choices = {"yolo", "boxes", "none"}});
+  f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere",
+    {.choices = {"yolo", "boxes", "none"}});
   f("model", model, "detector: a folder, a .cfg, .weights or .onnx file");
   f("boxes", boxes, "JSON file with boxes by frame stamp");
   f.group("localise", localise, "laser localisation");

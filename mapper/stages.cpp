@@ -13,14 +13,14 @@
 
 namespace waretwin {
 
-namespace {
-
 std::string chosen_poses(const MapperConfig& config, const StreamInfo& info) {
   if (config.poses != "auto") return config.poses;
   if (!info.lasers.empty()) return "laser";
   if (info.has_recorded_poses) return "recorded";
   return "odometry";
 }
+
+namespace {
 
 std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const StreamInfo& info) {
   const std::string poses = chosen_poses(config, info);
@@ -29,7 +29,8 @@ std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const Stre
     if (!info.has_recorded_poses) throw Error(info.source + ": poses 'recorded' were asked for, but the recording holds none");
     return std::make_unique<RecordedLocaliser>(info);
   }
-  if (!info.has_odometry) throw Error(info.source + ": holds neither scans, nor poses, nor odometry; expected one of them for the vehicle's poses");
+  if (!info.has_odometry)
+    throw Error(info.source + ": holds neither scans, nor poses, nor odometry; expected one of them for the vehicle's poses");
   return std::make_unique<OdometryLocaliser>(info);
 }
 

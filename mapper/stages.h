@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "mapper/associate/associator.h"
 #include "mapper/detect/detector.h"
@@ -20,6 +21,9 @@ struct Stages {
   std::unique_ptr<Associator> associator;
   std::unique_ptr<Integrator> integrator;
 };
+
+// What `poses` means for a stream: auto is laser where it has scans, else recorded, else odometry.
+std::string chosen_poses(const MapperConfig& config, const StreamInfo& info);
 
 // The stages that a configuration names. Throws Error where a model file is missing or the stream lacks what a stage needs (laser poses
 // without scans).

@@ -59,6 +59,12 @@ PictureMesh tinted(const MapScene& scene) {
   return mesh;
 }
 
+// Id and class; the id alone where all objects are of one class, so that neighbours' labels stay apart.
+std::string label_of(const ListedObject& object, const std::vector<ListedObject>& all) {
+  const bool one_class = std::all_of(all.begin(), all.end(), [&](const ListedObject& o) { return o.class_name == all.front().class_name; });
+  return one_class ? std::to_string(object.id) : object.class_name + " " + std::to_string(object.id);
+}
+
 void draw_path(Picture& picture, const std::vector<StampedPose>& path, const cv::Scalar& colour, int thickness) {
   for (std::size_t i = 1; i < path.size(); ++i) {
     picture.draw_line(path[i - 1].X_WB.translation(), path[i].X_WB.translation(), colour, thickness);
@@ -124,7 +130,7 @@ cv::Mat draw_from_above(const MapScene& scene, double ceiling) {
   for (const ListedObject& object : scene.truth) draw_outline(picture, object.cuboid, kTruth, 3);
   for (const ListedObject& object : scene.mapped) {
     draw_outline(picture, object.cuboid, kMapped, 2);
-    picture.draw_label(object.cuboid.centre, object.class_name + " " + std::to_string(object.id), cv::Scalar(255, 255, 255));
+    picture.draw_label(object.cuboid.centre, label_of(object, scene.mapped), cv::Scalar(255, 255, 255));
   }
   return with_legend(picture.image(), picture.view(), scene);
 }
@@ -140,8 +146,8 @@ cv::Mat draw_oblique(const MapScene& scene, double ceiling) {
   picture.draw(tinted(scene), ceiling);
   for (const ListedObject& object : scene.mapped) {
     picture.draw_edges(object.cuboid, colour_of_id(object.id), 1);
-    picture.draw_label({object.cuboid.centre.x(), object.cuboid.centre.y(), object.cuboid.top() + 0.1},
-                       object.class_name + " " + std::to_string(object.id), cv::Scalar(255, 255, 255));
+    picture.draw_label({object.cuboid.centre.x(), object.cuboid.centre.y(), object.cuboid.top() + 0.1}, label_of(object, scene.mapped),
+                       cv::Scalar(255, 255, 255));
   }
   return picture.image();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -11,6 +12,10 @@
 #include "core/config.h"
 
 namespace waretwin {
+
+// Checks for CLI11 whose message says what was expected. CLI11's own let NaN pass, wrap negative numbers and print limits with 300 digits.
+CLI::Validator number_from_to(double least, double most);
+CLI::Validator whole_number();  // 0 to 2^64 - 1
 
 struct CommonOptions {
   std::optional<std::uint64_t> seed;

@@ -14,6 +14,7 @@
 #include "mapper/output/map_archive.h"
 #include "scenes/describe.h"
 #include "scenes/gltf_loader.h"
+#include "sim/robot.h"
 
 namespace waretwin {
 
@@ -80,6 +81,7 @@ int inspect(const InspectOptions& options) {
     const RunConfig defaults;
     RunConfig config = load_run_config(file, defaults, settings);
     std::cout << (options.keys ? describe_config([&](Fields& f) { config.visit(f); }) : describe_scenario(config.scenario));
+    if (!options.keys) std::cout << "route: " << to_seconds(RobotMotion(config.scenario.robot).duration()) << " s\n";
     return 0;
   }
   if (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json")) {

@@ -69,7 +69,7 @@ int map(const MapOptions& options) {
 
 Command add_map_command(CLI::App& program) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout, laser logs)");
+  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout)");
   command->add_option("RECORDING", options->recording, "folder of a recording")->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(

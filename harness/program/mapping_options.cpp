@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "harness/program/common_options.h"
 
 namespace waretwin {
 
@@ -16,8 +17,11 @@ void MappingOptions::add_to(CLI::App& command, const std::string& detector_help)
       .add_option("--rate", rate_hz,
                   "frames mapped a second, those in between are dropped; 0 = every frame (default: 1 for paper, 0 for best)")
       ->type_name("HZ")
-      ->check(CLI::Range(0.0, 1000.0));
-  command.add_option("--frames", frames, "stops after N camera frames (0: all)")->type_name("N")->check(CLI::NonNegativeNumber);
+      ->check(number_from_to(0.0, 1000.0));
+  command.add_option("--frames", frames, "stops after N camera frames (0: all)")
+      ->type_name("N")
+      ->check(whole_number())
+      ->check(CLI::Range(0, 1000000000));
 }
 
 MapperConfig MappingOptions::mapper_config() const {

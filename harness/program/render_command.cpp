@@ -76,13 +76,21 @@ View view_of_model(const RenderCommandOptions& options) {
     sun.intensity = Eigen::Vector3f::Constant(2.0f);
     view.scene->lights.push_back(sun);
     view.scene->ambient = Eigen::Vector3f::Constant(0.5f);
+  } else {
+    view.scene->ambient = Eigen::Vector3f::Constant(0.3f);
   }
   view.scene->background = Eigen::Vector3f::Constant(0.6f);
   const Eigen::AlignedBox3f bounds = view.scene->bounds();
   if (bounds.isEmpty()) throw Error(options.source + ": holds no triangles");
   const Eigen::Vector3d centre = bounds.center().cast<double>();
   const double reach = std::max(0.01, static_cast<double>(bounds.diagonal().norm()));
-  view.X_WC = looking_at(centre + 1.1 * reach * Eigen::Vector3d(-0.6, -0.8, 0.55).normalized(), centre);
+  const Eigen::Vector3d half = 0.5 * bounds.sizes().cast<double>();
+  // A hall is looked at from a corner inside, below its lamps; anything smaller from outside.
+  constexpr double kSmallestHall = 4.0;  // metres
+  const bool hall = half.x() > 0.5 * kSmallestHall && half.y() > 0.5 * kSmallestHall;
+  const Eigen::Vector3d inside = centre + Eigen::Vector3d(-0.85 * half.x(), -0.7 * half.y(), 0.6 * half.z());
+  view.X_WC = looking_at(hall ? inside : centre + 1.1 * reach * Eigen::Vector3d(-0.6, -0.8, 0.55).normalized(),
+                         hall ? Eigen::Vector3d(centre.x(), centre.y(), bounds.min().z()) : centre);
   view.intrinsics = Intrinsics::from_field_of_view(1280, 720, to_radians(75.0), 2.0 * std::atan(std::tan(to_radians(37.5)) * 9.0 / 16.0));
   return view;
 }
@@ -94,6 +102,10 @@ View view_of_scenario(const RenderCommandOptions& options, const std::vector<Set
   view.seed = scenario.seed;
   view.exposure = scenario.lighting.exposure;
   const RobotMotion motion(scenario.robot);
+  const double end_s = to_seconds(motion.duration());
+  if (options.time_s && !(*options.time_s >= 0.0 && *options.time_s <= end_s)) {
+    throw Error("--time " + std::to_string(*options.time_s) + ": the route takes " + std::to_string(end_s) + " s; expected 0 to that");
+  }
   CameraConfig camera;
   if (!scenario.sensors.cameras.empty()) camera = scenario.sensors.cameras.begin()->second;
   view.intrinsics = camera.intrinsics();
@@ -103,6 +115,7 @@ View view_of_scenario(const RenderCommandOptions& options, const std::vector<Set
 
 int render(const RenderCommandOptions& options) {
   options.common.apply();
+  if (std::filesystem::path(options.out).extension() != ".png") throw Error("--out " + options.out + ": expected a name that ends in .png");
   RenderOptions how;
   how.quality = options.quality;
   if (options.samples > 0) how.samples = options.samples;
@@ -163,7 +176,7 @@ Command add_render_command(CLI::App& program) {
   options->common.add_to(*command);
   command->footer(
       "Examples:\n  waretwin render scenes/agiprobot/scenario.yaml --out view.png --time 12\n"
-      "  waretwin render scenes/agiprobot/scenario.yaml --out hall.png --pose=-2,-5,2.2,60,20 --quality path --samples 64\n"
+      "  waretwin render scenes/agiprobot/scenario.yaml --out hall.png --pose=-5.2,-2.2,2.6,24,22 --quality path --samples 64\n"
       "  waretwin render model.glb --out model.png --size 800x600");
   return {command, [options] { return render(*options); }};
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "harness/program/common_options.h"
 #include "harness/program/mapping_options.h"
@@ -44,6 +45,10 @@ std::string number(const char* pattern, const std::optional<double>& value) {
 }
 
 void print_summary(const char* name, const ScoreSummary& s) {
+  if (s.truth == 0) {
+    std::cout << name << ": no true object was seen enough to count (" << s.mapped << " mapped)\n";
+    return;
+  }
   std::cout << name << ": " << s.matched << " of " << s.truth << " objects matched, " << s.mapped << " mapped, mean IoU "
             << number("%.4f", s.mean_iou3d) << ", translation " << number("%.3f m", s.mean_e_trans_m) << ", yaw "
             << number("%.2f deg", s.mean_e_rot_deg) << "\n";
@@ -53,21 +58,25 @@ int run(const RunOptions& options) {
   options.common.apply();
   const RunConfig config = configure(options);
   const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
-  RunFolder folder(options.out);
-  // First of all, so that a folder that cannot be written stops the run before the drive.
-  RunConfig resolved = config;
-  folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
+  std::optional<RunFolder> folder;
+  // After all that can be refused, so that an earlier run's results outlive a mistake; before the drive, so that a folder that cannot be
+  // written stops the run at once.
+  const auto ready = [&] {
+    folder.emplace(options.out);
+    RunConfig resolved = config;
+    folder->write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
+  };
   if (!options.mapping.detector && config.truth_stages.detector) {
     spdlog::info("boxes come from the truth: no detector model was named (--detector)");
   }
   ClosedLoopResult result;
   {
     Progress progress("run", options.common.quiet);
-    result = run_closed_loop(config, scene, [&](double done, const ObjectMap& map) {
+    result = run_closed_loop(config, scene, ready, [&](double done, const ObjectMap& map) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     });
   }
-  write_closed_loop(folder, result);
+  write_closed_loop(*folder, result);
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
   std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json)\n";

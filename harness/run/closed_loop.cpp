@@ -31,9 +31,9 @@ Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream)
   return stages;
 }
 
-std::map<std::string, std::string> stage_names(const RunConfig& config) {
+std::map<std::string, std::string> stage_names(const RunConfig& config, const StreamInfo& info) {
   return {{"detector", config.truth_stages.detector ? "truth" : config.mapper.detector},
-          {"poses", config.truth_stages.poses ? "truth" : config.mapper.poses},
+          {"poses", config.truth_stages.poses ? "truth" : chosen_poses(config.mapper, info)},
           {"association", config.truth_stages.association ? "truth" : "map"},
           {"depth", config.simulation.truth_depth ? "truth" : "sensor"}};
 }
@@ -50,7 +50,7 @@ void score_trajectories(const ClosedLoopResult& result, RunScore& score) {
 
 }  // namespace
 
-ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
+ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene, const std::function<void()>& ready,
                                  const std::function<void(double, const ObjectMap&)>& progress) {
   SimulatedStream stream(config.scenario, scene, config.simulation);
   std::map<std::string, CameraConfig> cameras = config.scenario.sensors.cameras;
@@ -64,8 +64,10 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   hooks.on_frame = [&](const Mapper::FrameResult& frame) {
     if (coverage) coverage->add_frame(frame.frame.sensor, stream.last_frame_truth().X_WC);
   };
+  Stages stages = stages_with_truth(config, stream);
+  if (ready) ready();
   ClosedLoopResult result;
-  result.mapping = map_stream(stream, config.mapper, stages_with_truth(config, stream), config.simulation.max_frames, hooks);
+  result.mapping = map_stream(stream, config.mapper, std::move(stages), config.simulation.max_frames, hooks);
 
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
@@ -85,7 +87,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.profile = config.mapper.profile;
   score.seed = config.scenario.seed;
   score.digest = digest_of(map);
-  score.stages = stage_names(config);
+  score.stages = stage_names(config, stream.info());
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
   score.timing_ms = summarise_stages(result.mapping.frames);

@@ -19,9 +19,10 @@ struct ClosedLoopResult {
 };
 
 // Drives the whole route (or simulation.max_frames camera frames) through `scene`, which is config.scenario's (build_scene), and scores the
-// map. Throws Error for what the scenario or the
-// configuration lacks.
+// map. Throws Error for what the scenario or the configuration lacks; `ready` is called when all that could be refused beforehand was not,
+// so that nothing need be written before.
 ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
+                                 const std::function<void()>& ready = {},
                                  const std::function<void(double, const ObjectMap&)>& progress = {});
 
 // Fingerprint of cuboids, trajectory and voxels: equal runs have equal ones, at any number of threads.

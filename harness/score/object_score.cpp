@@ -140,7 +140,9 @@ ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std
 
     std::vector<RankedObject> counted;
     for (std::size_t j = 0; j < ranked.size(); ++j) {
-      if (!ignored[j]) counted.push_back(ranked[j]);
+      if (ignored[j]) continue;
+      counted.push_back(ranked[j]);
+      if (!ranked[j].hit) result.false_positives.push_back(mapped[candidates[j]].id);
     }
     summary.truth += class_truth;
     summary.mapped += static_cast<int>(counted.size());
@@ -149,6 +151,7 @@ ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std
     class_ap.push_back(average_precision(counted, class_truth));
     class_precision.push_back(ratio(class_matched, static_cast<int>(counted.size())).value_or(0.0));
   }
+  std::sort(result.false_positives.begin(), result.false_positives.end());
   summary.recall = ratio(summary.matched, summary.truth);
   summary.precision = ratio(summary.matched, summary.mapped);
   summary.mean_iou3d = mean_or_none(ious);

@@ -44,6 +44,7 @@ struct ScoreSummary {
 
 struct ObjectListScore {
   std::vector<ObjectScore> objects;  // in the order of the truth
+  std::vector<int> false_positives;  // ids of mapped objects that count and match nothing, ascending
   ScoreSummary summary;
 };
 

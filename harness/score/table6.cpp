@@ -51,6 +51,11 @@ std::string rows(const ObjectListScore& score) {
   text += "\n" + std::to_string(s.matched) + " of " + std::to_string(s.truth) + " objects matched (IoU >= 0.5), " +
           std::to_string(s.mapped) + " mapped; mAP as in the paper " + number("%.2f", s.map_paper) + ", AP50 " + number("%.2f", s.ap50) +
           ".\n";
+  if (!score.false_positives.empty()) {
+    text += "\nMapped, but no true object's match:";
+    for (const int id : score.false_positives) text += " " + std::to_string(id);
+    text += ".\n";
+  }
   return text;
 }
 

@@ -53,7 +53,7 @@ void write_cuboids(const std::filesystem::path& file, const ObjectList& objects)
     list.push_back(std::move(entry));
   }
   nlohmann::ordered_json root;
-  root["frame"] = "world";
+  root["frame"] = objects.empty() ? std::string("world") : objects.front().cuboid.frame;
   root["objects"] = std::move(list);
   write_file(file, root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }

@@ -131,16 +131,15 @@ tinygltf::Value triple(const Eigen::Vector3d& v) {
   return tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(v.x()), tinygltf::Value(v.y()), tinygltf::Value(v.z())});
 }
 
-tinygltf::Value extras_of(const MappedObject& object) {
+// The class is given to objects with a surface only: readers take it as an object to be boxed, which needs triangles.
+tinygltf::Value extras_of(const MappedObject& object, bool has_surface) {
   const Cuboid box = canonical(object.cuboid);
-  Object cuboid{{"frame", tinygltf::Value(std::string("world"))},
-                {"centre", triple(box.centre)},
-                {"yaw", tinygltf::Value(box.yaw)},
-                {"size", triple(box.size)}};
+  Object cuboid{
+      {"frame", tinygltf::Value(box.frame)}, {"centre", triple(box.centre)}, {"yaw", tinygltf::Value(box.yaw)}, {"size", triple(box.size)}};
   Object own{{"id", tinygltf::Value(object.id)},
-             {"class", tinygltf::Value(object.class_name)},
              {"score", tinygltf::Value(static_cast<double>(object.score))},
              {"cuboid", tinygltf::Value(cuboid)}};
+  own[has_surface ? "class" : "class_without_surface"] = tinygltf::Value(object.class_name);
   return tinygltf::Value(Object{{"waretwin", tinygltf::Value(own)}});
 }
 
@@ -163,7 +162,9 @@ void write_map_glb(const std::filesystem::path& file, const SurfaceMesh& mesh, c
   Builder builder;
   builder.add_node("background", part(0), tinygltf::Value(Object{{"waretwin", tinygltf::Value(Object{{"id", tinygltf::Value(0)}})}}));
   for (const MappedObject& object : objects) {
-    builder.add_node(object.class_name + "_" + std::to_string(object.id), part(object.id), extras_of(object));
+    const SurfaceMesh* surface = part(object.id);
+    const bool has_surface = surface && !surface->triangles.empty();
+    builder.add_node(object.class_name + "_" + std::to_string(object.id), surface, extras_of(object, has_surface));
   }
   write_file(file, builder.bytes());
 }

@@ -34,6 +34,11 @@ TEST(Program, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --profile papr"), "papr");
   EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --threads many"), "many");
   EXPECT_ONE_LINE(test::waretwin("run --out o"), "SCENARIO");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --rate nan"), "0 to 1000");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --frames -1"), "whole number");
+  EXPECT_ONE_LINE(test::waretwin("run x.yaml --out o --seed -1"), "whole number");
+  EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --out o.jpg"), ".png");
+  EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --out o.png --time 1000"), "--time");
   EXPECT_ONE_LINE(test::waretwin("render model.glb --out o.png --time 1 --pose 0,0,0,0,0"), "--");
 }
 
@@ -42,7 +47,7 @@ TEST(Program, NamesAMissingFile) {
   const std::string out = " --out '" + folder.path().string() + "/out'";
   EXPECT_ONE_LINE(test::waretwin("run nowhere.yaml" + out), "nowhere.yaml");
   EXPECT_ONE_LINE(test::waretwin("map nowhere" + out), "nowhere");
-  EXPECT_ONE_LINE(test::waretwin("render nowhere.glb" + out), "nowhere.glb");
+  EXPECT_ONE_LINE(test::waretwin("render nowhere.glb --out '" + folder.path().string() + "/out.png'"), "nowhere.glb");
   EXPECT_ONE_LINE(test::waretwin("inspect nowhere.glb"), "nowhere.glb");
   EXPECT_ONE_LINE(test::waretwin("score nowhere.json --truth nothing.json"), "nowhere.json");
   EXPECT_ONE_LINE(test::waretwin("run " + agiprobot() + out + " --detector nowhere.cfg"), "nowhere.cfg");

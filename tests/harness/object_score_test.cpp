@@ -69,6 +69,14 @@ TEST(ObjectScore, CountsAnUnassignedObjectAsZeroInTheMeanIouAndNotInTheErrors) {
   EXPECT_FALSE(score.objects[1].e_trans_m.has_value());
 }
 
+TEST(ObjectScore, NamesFalsePositives) {
+  const auto score =
+      score_objects({object(4, "c", 0.1, 0.0), object(3, "c", 0.3, 0.0), object(9, "c", 5.0, 0.0), object(7, "other", 0.0, 0.0)},
+                    {object(1, "c", 0.0, 0.0)});
+  EXPECT_EQ(score.objects[0].map_id, 4);
+  EXPECT_EQ(score.false_positives, (std::vector<int>{3, 9})) << "a second box on a true object is one, another class is not";
+}
+
 TEST(ObjectScore, LeavesOutWhatWasHardlySeen) {
   std::vector<ListedObject> truth = {object(1, "c", 0.0, 0.0), object(2, "c", 5.0, 0.0)};
   truth[1].visible_fraction = 0.59;
