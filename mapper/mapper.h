@@ -47,7 +47,8 @@ class Mapper {
   Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info);
   ~Mapper();
 
-  // Takes the next event. Throws Error where stamps go back or a frame's camera is not in the stream's info. Frames beyond the mapping rate are dropped and counted.
+  // Takes the next event. Throws Error where stamps go back or a frame's camera is not in the stream's info. Frames beyond the mapping rate
+  // are dropped and counted.
   void consume(SensorEvent event);
   const ObjectMap& map() const { return map_; }
   // Hands over the map; the mapper is then empty.

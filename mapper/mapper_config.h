@@ -14,11 +14,11 @@ namespace waretwin {
 
 struct MapperConfig {
   std::string profile = "best";
-  double rate_hz = 0.0;             // frames mapped a second, those in between are dropped; 0 = every frame
-  std::string poses = "auto";       // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
-  std::string detector = "none";    // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
-  std::string model;                // folder, .cfg, .weights or .onnx file
-  std::string boxes;                // JSON file with boxes by frame stamp
+  double rate_hz = 0.0;           // frames mapped a second, those in between are dropped; 0 = every frame
+  std::string poses = "auto";     // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
+  std::string detector = "none";  // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
+  std::string model;              // folder, .cfg, .weights or .onnx file
+  std::string boxes;              // JSON file with boxes by frame stamp
   LaserIcpConfig localise;
   DetectConfig detect;
   SegmentConfig segment;

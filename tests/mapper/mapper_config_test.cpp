@@ -11,14 +11,14 @@ namespace {
 // The constants that stand in the paper, each with its place in the text.
 TEST(MapperConfig, PaperHasThePapersConstants) {
   const MapperConfig paper = MapperConfig::make("paper");
-  EXPECT_EQ(paper.rate_hz, 1.0);                                   // section 4.3
-  EXPECT_EQ(paper.segment.cluster_fraction, 0.7);                  // section 3.2, "at least 70 %"
-  EXPECT_EQ(paper.associate.max_frame_gap, 10);                    // section 3.3, eta < 10
-  EXPECT_EQ(paper.associate.min_iou_2d, 0.5);                      // section 3.3
-  EXPECT_EQ(paper.associate.min_correlation, 0.3);                 // section 3.3
-  EXPECT_EQ(paper.associate.min_iou_3d, 0.5);                      // section 3.3
-  EXPECT_EQ(paper.associate.merge_iou_3d, 0.8);                    // section 3.3
-  EXPECT_EQ(paper.integrate.voxel_m, 0.02);                        // section 4.2
+  EXPECT_EQ(paper.rate_hz, 1.0);                    // section 4.3
+  EXPECT_EQ(paper.segment.cluster_fraction, 0.7);   // section 3.2, "at least 70 %"
+  EXPECT_EQ(paper.associate.max_frame_gap, 10);     // section 3.3, eta < 10
+  EXPECT_EQ(paper.associate.min_iou_2d, 0.5);       // section 3.3
+  EXPECT_EQ(paper.associate.min_correlation, 0.3);  // section 3.3
+  EXPECT_EQ(paper.associate.min_iou_3d, 0.5);       // section 3.3
+  EXPECT_EQ(paper.associate.merge_iou_3d, 0.8);     // section 3.3
+  EXPECT_EQ(paper.integrate.voxel_m, 0.02);         // section 4.2
 }
 
 TEST(MapperConfig, AProfileSetsAllThatDoesNotFollowIt) {
