@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/pictures/png_file.h"
 #include "harness/program/common_options.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/scenario.h"
@@ -150,10 +150,8 @@ int render(const RenderCommandOptions& options) {
                                           view.intrinsics.fy * scale, 0.5 * (size[0] - 1.0), 0.5 * (size[1] - 1.0));
   }
   const StillPicture picture = render_still(view.scene, view.intrinsics, view.X_WC, how, options.common.seed.value_or(view.seed));
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", picture.colour, png)) throw InternalError("the picture could not be encoded");
   if (const auto parent = std::filesystem::path(options.out).parent_path(); !parent.empty()) make_folder(parent);
-  write_file(options.out, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+  write_png(options.out, picture.colour);
   return 0;
 }
 

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
 #include "harness/run/run_folder.h"
+#include "harness/score/number_text.h"
 
 namespace waretwin {
 
@@ -36,12 +36,6 @@ RunConfig configure(const RunOptions& options) {
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
   for (Setting& setting : options.common.settings()) settings.push_back(std::move(setting));
   return load_run_config(options.scenario, std::move(config), settings);
-}
-
-std::string number(const char* pattern, const std::optional<double>& value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, pattern, value.value_or(0.0));
-  return value ? buffer : "-";
 }
 
 void print_summary(const char* name, const ScoreSummary& s) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/pictures/png_file.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
 #include "mapper/integrate/tsdf_volume.h"
@@ -82,11 +82,7 @@ std::filesystem::path RunFolder::file(const std::string& name) {
 
 void RunFolder::write(const std::string& name, const std::string& bytes) { write_file(file(name), bytes); }
 
-void RunFolder::write_png(const std::string& name, const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", image, png)) throw InternalError("a picture could not be encoded: " + name);
-  write_file(file(name), std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
-}
+void RunFolder::write_png(const std::string& name, const cv::Mat& image) { waretwin::write_png(file(name), image); }
 
 void RunFolder::clear(const std::string& name) {
   std::error_code error;

@@ -3,6 +3,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "harness/score/number_text.h"
+
 namespace waretwin {
 
 namespace {
@@ -24,13 +26,6 @@ constexpr PaperRow kPaper[] = {{"1", 0.7446, 0.058, 3.4},
   va_start(arguments, pattern);
   std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
   va_end(arguments);
-  return buffer;
-}
-
-std::string number(const char* pattern, const std::optional<double>& value) {
-  if (!value) return "-";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, pattern, *value);
   return buffer;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
 
@@ -91,12 +92,9 @@ std::string tum_text(const std::vector<StampedPose>& poses) {
     Eigen::Quaterniond q(point.X_WB.rotation());
     if (q.w() < 0.0) q.coeffs() = -q.coeffs();
     const Eigen::Vector3d p = point.X_WB.translation();
-    const bool negative = point.stamp < 0;
-    const auto magnitude = static_cast<long long>(negative ? -point.stamp : point.stamp);
     char line[256];
-    std::snprintf(line, sizeof line, "%s%lld.%09lld %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", negative ? "-" : "",
-                  magnitude / kNanosecondsPerSecond, magnitude % kNanosecondsPerSecond, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-    text += line;
+    std::snprintf(line, sizeof line, " %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += stamp_text(point.stamp) + line;
   }
   return text;
 }

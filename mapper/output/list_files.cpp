@@ -5,6 +5,7 @@
 
 #include "core/files.h"
 #include "mapper/output/map_files.h"
+#include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
 
@@ -62,10 +63,7 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<std::
   std::string text;
   for (const auto& [stamp, pose] : poses) {
     // From the integer nanoseconds: a double does not hold an epoch stamp to the last digit.
-    const bool negative = stamp < 0;
-    const std::uint64_t ns = negative ? ~static_cast<std::uint64_t>(stamp) + 1 : static_cast<std::uint64_t>(stamp);
-    const std::string fraction = std::to_string(ns % kNanosecondsPerSecond);
-    text += (negative ? "-" : "") + std::to_string(ns / kNanosecondsPerSecond) + "." + std::string(9 - fraction.size(), '0') + fraction;
+    text += stamp_text(stamp);
     Eigen::Quaterniond q(pose.linear());
     q.normalize();
     if (q.w() < 0.0) q.coeffs() = -q.coeffs();

@@ -83,7 +83,9 @@ Stamp parse_text_stamp(const std::filesystem::path& file, int line, const std::s
 }
 
 std::string stamp_text(Stamp stamp) {
-  const auto magnitude = static_cast<unsigned long long>(stamp < 0 ? -stamp : stamp);
+  // Unsigned, so that the smallest stamp has a magnitude too.
+  const auto bits = static_cast<unsigned long long>(stamp);
+  const unsigned long long magnitude = stamp < 0 ? 0ULL - bits : bits;
   char text[40];
   std::snprintf(text, sizeof text, "%s%llu.%09llu", stamp < 0 ? "-" : "", magnitude / 1'000'000'000ULL, magnitude % 1'000'000'000ULL);
   return text;
