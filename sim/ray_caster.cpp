@@ -158,8 +158,8 @@ struct RayCaster::State {
   std::vector<AlphaMask> masks;          // as many as meshes
   std::vector<DeviceScene> mesh_scenes;  // as many as meshes; null for meshes without triangles
   DeviceScene top;
-  std::vector<RTCGeometry> instances;       // owned by `top`; null for instances of empty meshes
-  std::vector<Eigen::Affine3f> transforms;  // as many as instances
+  std::vector<RTCGeometry> instances;  // owned by `top`; null for instances of empty meshes
+  std::vector<Placement> placements;   // as many as instances
 
   void add_mesh(std::size_t index);
   void add_instance(std::size_t index);
@@ -208,7 +208,7 @@ void RayCaster::State::add_mesh(std::size_t index) {
 void RayCaster::State::add_instance(std::size_t index) {
   const Instance& instance = scene->instances[index];
   RTCScene mesh_scene = mesh_scenes[static_cast<std::size_t>(instance.mesh)].get();
-  transforms.push_back(instance.X_WM);
+  placements.emplace_back(instance.X_WM);
   instances.push_back(nullptr);
   if (mesh_scene == nullptr) return;
   RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
@@ -219,6 +219,13 @@ void RayCaster::State::add_instance(std::size_t index) {
   rtcAttachGeometryByID(top.get(), geometry, static_cast<unsigned>(index));
   rtcReleaseGeometry(geometry);
   instances.back() = geometry;
+}
+
+Placement::Placement(const Eigen::Affine3f& X) : X_WM(X), mean_scale(std::cbrt(std::abs(X.linear().determinant()))) {
+  const Eigen::Matrix3f linear = X.linear();
+  cofactors.col(0) = linear.col(1).cross(linear.col(2));
+  cofactors.col(1) = linear.col(2).cross(linear.col(0));
+  cofactors.col(2) = linear.col(0).cross(linear.col(1));
 }
 
 RayCaster::RayCaster(std::shared_ptr<const Scene> scene, const RayCasterOptions& options) : state_(std::make_unique<State>()) {
@@ -304,8 +311,8 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
 
 void RayCaster::set_transform(int instance, const Eigen::Affine3f& X_WM) {
   const auto index = static_cast<std::size_t>(instance);
-  WARETWIN_CHECK(index < state_->transforms.size(), "an instance of the scene");
-  state_->transforms[index] = X_WM;
+  WARETWIN_CHECK(index < state_->placements.size(), "an instance of the scene");
+  state_->placements[index] = Placement(X_WM);
   RTCGeometry geometry = state_->instances[index];
   if (geometry == nullptr) return;
   set_rtc_transform(geometry, X_WM);
@@ -317,7 +324,7 @@ void RayCaster::commit() {
   require_no_error(state_->device.get());
 }
 
-const Eigen::Affine3f& RayCaster::transform(int instance) const { return state_->transforms[static_cast<std::size_t>(instance)]; }
+const Placement& RayCaster::placement(int instance) const { return state_->placements[static_cast<std::size_t>(instance)]; }
 
 Eigen::AlignedBox3f RayCaster::bounds() const {
   RTCBounds b;

@@ -45,6 +45,16 @@ struct Hit {
 // How alike the rays of a packet are; decides how the tree is walked, never what is hit.
 enum class Coherence { kCoherent, kIncoherent };
 
+// Where an instance stands, with what shading needs of it at every hit.
+struct Placement {
+  Placement() = default;
+  explicit Placement(const Eigen::Affine3f& X);
+
+  Eigen::Affine3f X_WM = Eigen::Affine3f::Identity();
+  Eigen::Matrix3f cofactors = Eigen::Matrix3f::Identity();  // takes normals from M to W, also where X_WM scales unevenly; not unit
+  float mean_scale = 1.0f;                                  // by which X_WM stretches lengths
+};
+
 class RayCaster {
  public:
   // Throws Error for a scene without triangles, an unknown instruction set, or one that this CPU lacks (naming it).
@@ -68,7 +78,8 @@ class RayCaster {
   // Moves an instance; takes effect with commit(). Neither may run while rays are cast.
   void set_transform(int instance, const Eigen::Affine3f& X_WM);
   void commit();
-  const Eigen::Affine3f& transform(int instance) const;
+  const Eigen::Affine3f& transform(int instance) const { return placement(instance).X_WM; }
+  const Placement& placement(int instance) const;
   // Bounds of all instances at their present places.
   Eigen::AlignedBox3f bounds() const;
 

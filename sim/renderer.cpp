@@ -49,6 +49,13 @@ constexpr std::array<PixelOffset, kTilePixels> make_tile_order() {
 }
 constexpr auto kTileOrder = make_tile_order();
 
+// What the rays of one tile hit, in the order of kTileOrder; those beyond the picture's border are there too.
+struct Tile {
+  int left = 0, top = 0;
+  std::array<Ray, kTilePixels> rays;
+  std::array<Hit, kTilePixels> hits;
+};
+
 // Pixels in Z-order: every aligned block of 2^n x 2^n pixels holds consecutive numbers.
 std::uint32_t spread_bits(std::uint32_t v) {
   v = (v | v << 8) & 0x00ff00ffu;
@@ -97,8 +104,9 @@ struct Renderer::State {
 
   // Of the picture being made, row-major.
   int width = 0, height = 0;
-  std::vector<Hit> hits;
-  std::vector<Eigen::Vector3f> direct, ambient, emitted;
+  std::vector<Eigen::Vector3f> direct, ambient;
+  std::vector<std::uint8_t> glows;  // 1: the pixel has a value in `emitted`, which few have
+  std::vector<Eigen::Vector3f> emitted;
   std::vector<float> visible, openness, scratch;
   SurfaceGuide guide, half_guide;
   std::vector<Eigen::Vector3f> half_positions, half_normals;
@@ -106,10 +114,11 @@ struct Renderer::State {
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
-  void cast_primary(const PixelRays& pixel_rays);
-  void write_geometry(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, FrameImages& images) const;
-  void shade(const PixelRays& pixel_rays, std::uint32_t seed);
-  void shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, LightParts& parts);
+  void prepare(bool shaded);
+  void look(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, const std::uint32_t* shadow_seed,
+            FrameImages& images);
+  void write_geometry(const Tile& tile, const Eigen::Matrix3f& R_CW, const RenderRequest& request, FrameImages& images) const;
+  void shade(const Tile& tile, float spread, std::uint32_t seed, LightParts& parts);
   void find_openness(std::uint32_t seed);
   void compose(cv::Mat& colour) const;
   void trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const;
@@ -133,76 +142,67 @@ Renderer::State::State(std::shared_ptr<const RayCaster> caster, const RenderOpti
   }
 }
 
-void Renderer::State::cast_primary(const PixelRays& pixel_rays) {
-  hits.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
-  parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
-    std::array<Ray, kTilePixels> tile_rays;
-    std::array<Hit, kTilePixels> tile_hits;
-    for (int top = static_cast<int>(begin) * kTileHeight; top < static_cast<int>(end) * kTileHeight; top += kTileHeight) {
-      for (int left = 0; left < width; left += kTileWidth) {
-        for (std::size_t i = 0; i < kTilePixels; ++i) tile_rays[i] = pixel_rays.at(left + kTileOrder[i].x, top + kTileOrder[i].y);
-        ray_caster->cast(tile_rays, tile_hits, Coherence::kCoherent);
-        for (std::size_t i = 0; i < kTilePixels; ++i) {
-          const int x = left + kTileOrder[i].x, y = top + kTileOrder[i].y;
-          if (x < width && y < height) hits[index(x, y)] = tile_hits[i];
-        }
-      }
-    }
-  });
+void Renderer::State::prepare(bool shaded) {
+  if (!shaded) return;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  direct.resize(pixels);
+  ambient.resize(pixels);
+  glows.resize(pixels);
+  emitted.resize(pixels);
+  visible.resize(pixels);
+  guide.resize(width, height);
+  half_guide.resize((width + 1) / 2, (height + 1) / 2);
+  half_positions.resize(half_guide.depth.size());
+  half_normals.resize(half_guide.depth.size());
 }
 
-void Renderer::State::write_geometry(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request,
-                                     FrameImages& images) const {
+// Geometry and, with a seed for the shadow rays, light before shadows are smoothed. A tile's hits are used while they are in the cache.
+void Renderer::State::look(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, const std::uint32_t* shadow_seed,
+                           FrameImages& images) {
+  prepare(shadow_seed != nullptr);
   images.depth.create(height, width, CV_32FC1);
   images.instances.create(height, width, CV_16UC1);
   if (request.classes) images.classes.create(height, width, CV_16UC1);
   if (request.normals) images.normals.create(height, width, CV_32FC3);
   const Eigen::Matrix3f R_CW = X_WC.linear().transpose().cast<float>();
-  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      auto* depth = images.depth.ptr<float>(y);
-      auto* instances = images.instances.ptr<std::uint16_t>(y);
-      for (int x = 0; x < width; ++x) {
-        const Hit& hit = hits[index(x, y)];
-        depth[x] = hit.valid() ? hit.distance : 0.0f;
-        instances[x] = hit.valid() ? object_of_instance[static_cast<std::size_t>(hit.instance)] : std::uint16_t{0};
-        if (request.classes) {
-          images.classes.ptr<std::uint16_t>(y)[x] =
-              hit.valid() ? class_of_instance[static_cast<std::size_t>(hit.instance)] : std::uint16_t{0};
+  const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
+  parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
+    Tile tile;
+    LightParts parts;
+    for (tile.top = static_cast<int>(begin) * kTileHeight; tile.top < static_cast<int>(end) * kTileHeight; tile.top += kTileHeight) {
+      for (tile.left = 0; tile.left < width; tile.left += kTileWidth) {
+        for (std::size_t i = 0; i < kTilePixels; ++i) {
+          tile.rays[i] = pixel_rays.at(tile.left + kTileOrder[i].x, tile.top + kTileOrder[i].y);
         }
-        if (request.normals) {
-          Eigen::Vector3f n = Eigen::Vector3f::Zero();
-          if (hit.valid()) n = R_CW * surfaces.face_normal(pixel_rays.at(x, y), hit);
-          images.normals.ptr<cv::Vec3f>(y)[x] = {n.x(), n.y(), n.z()};
-        }
+        ray_caster->cast(tile.rays, tile.hits, Coherence::kCoherent);
+        write_geometry(tile, R_CW, request, images);
+        if (shadow_seed != nullptr) shade(tile, pixel_rays.spread(), *shadow_seed, parts);
       }
     }
   });
 }
 
-void Renderer::State::shade(const PixelRays& pixel_rays, std::uint32_t seed) {
-  direct.resize(hits.size());
-  ambient.resize(hits.size());
-  emitted.resize(hits.size());
-  visible.resize(hits.size());
-  guide.resize(width, height);
-  half_guide.resize((width + 1) / 2, (height + 1) / 2);
-  half_positions.resize(half_guide.depth.size());
-  half_normals.resize(half_guide.depth.size());
-  const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
-  parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
-    LightParts parts;
-    for (int top = static_cast<int>(begin) * kTileHeight; top < static_cast<int>(end) * kTileHeight; top += kTileHeight) {
-      for (int left = 0; left < width; left += kTileWidth) shade_tile(pixel_rays, seed, left, top, parts);
+void Renderer::State::write_geometry(const Tile& tile, const Eigen::Matrix3f& R_CW, const RenderRequest& request,
+                                     FrameImages& images) const {
+  for (std::size_t i = 0; i < kTilePixels; ++i) {
+    const int x = tile.left + kTileOrder[i].x, y = tile.top + kTileOrder[i].y;
+    if (x >= width || y >= height) continue;
+    const Hit& hit = tile.hits[i];
+    const auto instance = static_cast<std::size_t>(hit.instance);
+    images.depth.ptr<float>(y)[x] = hit.valid() ? hit.distance : 0.0f;
+    images.instances.ptr<std::uint16_t>(y)[x] = hit.valid() ? object_of_instance[instance] : std::uint16_t{0};
+    if (request.classes) images.classes.ptr<std::uint16_t>(y)[x] = hit.valid() ? class_of_instance[instance] : std::uint16_t{0};
+    if (request.normals) {
+      Eigen::Vector3f n = Eigen::Vector3f::Zero();
+      if (hit.valid()) n = R_CW * surfaces.face_normal(tile.rays[i], hit);
+      images.normals.ptr<cv::Vec3f>(y)[x] = {n.x(), n.y(), n.z()};
     }
-  });
-  if (options.shadows) smooth(guide, kShadowRadius, visible, scratch);
+  }
 }
 
-void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed, int left, int top, LightParts& parts) {
+void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, LightParts& parts) {
   const Scene& scene = ray_caster->scene();
-  const SpreadPoints spread(seed);
+  const SpreadPoints points(seed);
   struct Shadow {
     int light;
     std::size_t pixel;
@@ -215,16 +215,17 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   } quad;
   std::size_t count = 0;
-  for (const PixelOffset& offset : kTileOrder) {
-    const int x = left + offset.x, y = top + offset.y;
+  for (std::size_t i = 0; i < kTilePixels; ++i) {
+    const int x = tile.left + kTileOrder[i].x, y = tile.top + kTileOrder[i].y;
     if (x >= width || y >= height) continue;
     const std::size_t p = index(x, y);
     const std::size_t h = static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(half_guide.width) + static_cast<std::size_t>(x / 2);
     const bool in_half = (x & 1) == 0 && (y & 1) == 0;
-    const Hit& hit = hits[p];
+    const Hit& hit = tile.hits[i];
     visible[p] = 1.0f;
     if (!hit.valid()) {
       direct[p] = ambient[p] = Eigen::Vector3f::Zero();
+      glows[p] = 1;
       emitted[p] = scene.background;
       guide.depth[p] = guide.tolerance[p] = 0.0f;
       guide.normal[p] = 0;
@@ -234,8 +235,8 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
       }
       continue;
     }
-    const Ray ray = pixel_rays.at(x, y);
-    const SurfacePoint point = surfaces.at(ray, hit, pixel_rays.spread());
+    const Ray& ray = tile.rays[i];
+    const SurfacePoint point = surfaces.at(ray, hit, spread);
     const Eigen::Vector3f v = -ray.direction.normalized();
     const float n_dot_v = std::max(point.normal.dot(v), 1e-3f);
     const Reflection reflection = reflection_of(point, n_dot_v);
@@ -248,11 +249,12 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
     }
     direct[p] = parts.reflected_by(reflection);
     ambient[p] = scene.ambient.cwiseProduct(reflection.diffuse + reflection.glossy_albedo);
-    emitted[p] = point.emissive;
+    glows[p] = point.emissive.isZero(0.0f) ? 0 : 1;
+    if (glows[p]) emitted[p] = point.emissive;
 
     const float cosine = std::max(point.face_normal.dot(v), 0.05f);
     guide.depth[p] = hit.distance;
-    guide.tolerance[p] = hit.distance * (1.5f * pixel_rays.spread() / cosine + 0.001f);
+    guide.tolerance[p] = hit.distance * (1.5f * spread / cosine + 0.001f);
     guide.normal[p] = packed_normal(point.face_normal.x(), point.face_normal.y(), point.face_normal.z());
     if (in_half) {
       half_guide.depth[h] = guide.depth[p];
@@ -268,7 +270,7 @@ void Renderer::State::shade_tile(const PixelRays& pixel_rays, std::uint32_t seed
       continue;
     }
     // Of each quad the first and the last pixel are left: two numbers a quad.
-    const SpreadPoint sample = spread.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
+    const SpreadPoint sample = points.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
     const int light = DirectLight::choose(parts, sample.a);
     shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
   }
@@ -341,7 +343,8 @@ void Renderer::State::compose(cv::Mat& colour) const {
       for (int x = 0; x < width; ++x) {
         const std::size_t p = index(x, y);
         const float open = options.occlusion && guide.depth[p] > 0.0f ? upsampled(guide, half_guide, openness, x, y) : 1.0f;
-        const Eigen::Vector3f radiance = emitted[p] + visible[p] * direct[p] + open * ambient[p];
+        Eigen::Vector3f radiance = visible[p] * direct[p] + open * ambient[p];
+        if (glows[p]) radiance += emitted[p];
         out[x] = tone_mapped_bgr(exposure * radiance);
       }
     }
@@ -383,18 +386,19 @@ FrameImages Renderer::render(const Intrinsics& intrinsics, const Pose& X_WC, con
   s.height = intrinsics.height;
   const PixelRays pixel_rays(intrinsics, X_WC);
   FrameImages images;
-  s.cast_primary(pixel_rays);
-  s.write_geometry(pixel_rays, X_WC, request, images);
-  if (!request.colour) return images;
-  images.colour.create(s.height, s.width, CV_8UC3);
   const auto seed = [&request](const char* purpose) {
     return picture_seed(RandomStream(request.seed, request.sensor, purpose, request.stamp));
   };
-  if (s.options.quality == "path") {
+  const bool by_paths = s.options.quality == "path";
+  const std::uint32_t shadow_seed = seed("render.shadow");
+  s.look(pixel_rays, X_WC, request, request.colour && !by_paths ? &shadow_seed : nullptr, images);
+  if (!request.colour) return images;
+  images.colour.create(s.height, s.width, CV_8UC3);
+  if (by_paths) {
     s.trace_paths(pixel_rays, seed("render.path"), images.colour);
     return images;
   }
-  s.shade(pixel_rays, seed("render.shadow"));
+  if (s.options.shadows) smooth(s.guide, kShadowRadius, s.visible, s.scratch);
   if (s.options.occlusion) s.find_openness(seed("render.occlusion"));
   s.compose(images.colour);
   return images;

@@ -9,7 +9,7 @@ namespace {
 
 Eigen::Vector3f unit(const Eigen::Vector3f& v, const Eigen::Vector3f& otherwise) {
   const float squared = v.squaredNorm();
-  return squared > 1e-30f ? Eigen::Vector3f(v / std::sqrt(squared)) : otherwise;
+  return squared > 1e-30f ? Eigen::Vector3f(v * (1.0f / std::sqrt(squared))) : otherwise;
 }
 
 // uv lengths per metre on each triangle: the square root of the ratio of areas.
@@ -27,9 +27,6 @@ std::vector<float> density(const Mesh& mesh) {
   }
   return out;
 }
-
-// Mean factor by which a transform stretches lengths.
-float mean_scale(const Eigen::Affine3f& X) { return std::cbrt(std::abs(X.linear().determinant())); }
 
 }  // namespace
 
@@ -100,8 +97,9 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
   const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
   const MaterialUse& use = materials_[static_cast<std::size_t>(mesh.material)];
-  const Eigen::Affine3f& X_WM = ray_caster_->transform(hit.instance);
-  const Eigen::Matrix3f linear = X_WM.linear();
+  const Placement& placement = ray_caster_->placement(hit.instance);
+  const Eigen::Affine3f& X_WM = placement.X_WM;
+  const auto linear = X_WM.linear();
   const Corners c = corners(mesh, hit);
 
   SurfacePoint point;
@@ -109,17 +107,12 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
   const Eigen::Vector3f& a = mesh.positions[c.i[0]];
   const Eigen::Vector3f e1 = linear * (mesh.positions[c.i[1]] - a), e2 = linear * (mesh.positions[c.i[2]] - a);
   const Eigen::Vector3f towards = -ray.direction;
-  point.face_normal = unit(e1.cross(e2), towards.normalized());
+  point.face_normal = unit(e1.cross(e2), towards);
   if (point.face_normal.dot(towards) < 0.0f) point.face_normal = -point.face_normal;
   point.normal = point.face_normal;
   if (!mesh.normals.empty()) {
     const Eigen::Vector3f n_M = c.w[0] * mesh.normals[c.i[0]] + c.w[1] * mesh.normals[c.i[1]] + c.w[2] * mesh.normals[c.i[2]];
-    // The matrix of cofactors takes normals along, also where the transform scales unevenly.
-    Eigen::Matrix3f cofactors;
-    cofactors.col(0) = linear.col(1).cross(linear.col(2));
-    cofactors.col(1) = linear.col(2).cross(linear.col(0));
-    cofactors.col(2) = linear.col(0).cross(linear.col(1));
-    point.normal = unit(cofactors * n_M, point.face_normal);
+    point.normal = unit(placement.cofactors * n_M, point.face_normal);
     if (point.normal.dot(point.face_normal) < 0.0f) point.normal = -point.normal;
   }
 
@@ -135,7 +128,7 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
     // A compromise between the long and the short side of the pixel's footprint on a slanted surface.
     const float length = ray.direction.norm();
     const float slant = std::max(point.face_normal.dot(towards) / length, 0.05f);
-    const float footprint_M = hit.distance * length * spread / std::sqrt(slant) / std::max(mean_scale(X_WM), 1e-12f);
+    const float footprint_M = hit.distance * length * spread / std::sqrt(slant) / std::max(placement.mean_scale, 1e-12f);
     const auto& densities = uv_density_[static_cast<std::size_t>(instance.mesh)];
     const float per_metre = densities.empty() ? 0.0f : densities[static_cast<std::size_t>(hit.primitive)];
     if (use.base_colour.sampler) {

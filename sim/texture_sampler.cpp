@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -62,6 +63,9 @@ int whole_below(float x) {
   const int i = static_cast<int>(x);
   return static_cast<float>(i) > x ? i - 1 : i;
 }
+
+// Of a positive, normal number or infinity: floor(log2(x)), which the library takes many steps for.
+int exponent(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127; }
 
 // The four texels around (u, v) and their weights.
 struct Taps {
@@ -153,7 +157,7 @@ void TextureSampler::add_level(const Level& finer) {
 Eigen::Vector4f TextureSampler::sample(const Eigen::Vector2f& uv, float footprint) const {
   const float texels = footprint * size_;
   int index = 0;
-  if (texels > 1.4142135f) index = std::min(std::ilogb(texels * 1.4142135f), static_cast<int>(levels_.size()) - 1);
+  if (texels > 1.4142135f) index = std::min(exponent(texels * 1.4142135f), static_cast<int>(levels_.size()) - 1);
   const Level& level = levels_[static_cast<std::size_t>(std::max(index, 0))];
   const Taps t = taps(uv, level.width, level.height, wrap_u_, wrap_v_, nearest_ && index == 0);
   const auto at = [&level](int x, int y) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "sim/texture_sampler.h"
@@ -10,8 +11,13 @@ namespace waretwin {
 
 namespace {
 
-constexpr float kWhite = 16.0f;
-constexpr int kSteps = 8192;
+// The table's index is a number's exponent and the first bits of its mantissa: steps of 1/1024 of the value, whatever its size, and no
+// root or logarithm to find them. Below kBlack the curve gives 0, at kWhite and above 255.
+constexpr float kBlack = 0x1p-16f, kWhite = 16.0f;
+constexpr int kDroppedBits = 13;
+constexpr std::uint32_t index_of(float radiance) { return std::bit_cast<std::uint32_t>(radiance) >> kDroppedBits; }
+constexpr std::uint32_t kFirst = index_of(kBlack);
+constexpr std::size_t kSteps = index_of(kWhite) - kFirst;
 
 double filmic(double x) {
   // 0.6 is the fit's own scale to ACES's middle grey.
@@ -19,23 +25,24 @@ double filmic(double x) {
   return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 
-// Indexed by the square root of radiance, so that dark values get their share of steps.
-std::array<std::uint8_t, kSteps + 1> make_table() {
-  std::array<std::uint8_t, kSteps + 1> table{};
-  for (int i = 0; i <= kSteps; ++i) {
-    const double root = static_cast<double>(i) / kSteps;
-    table[static_cast<std::size_t>(i)] = srgb_from_linear(static_cast<float>(filmic(root * root * static_cast<double>(kWhite))));
+// Each step by its middle value.
+std::array<std::uint8_t, kSteps> make_table() {
+  std::array<std::uint8_t, kSteps> table{};
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const std::uint32_t middle = (static_cast<std::uint32_t>(i + kFirst) << kDroppedBits) + (1u << (kDroppedBits - 1));
+    table[i] = srgb_from_linear(static_cast<float>(filmic(static_cast<double>(std::bit_cast<float>(middle)))));
   }
   return table;
 }
 
+const std::array<std::uint8_t, kSteps> kTable = make_table();
+
 }  // namespace
 
 std::uint8_t tone_mapped(float radiance) {
-  static const std::array<std::uint8_t, kSteps + 1> table = make_table();
-  if (!(radiance > 0.0f)) return 0;
-  const float root = std::sqrt(std::min(radiance, kWhite) / kWhite);
-  return table[static_cast<std::size_t>(root * static_cast<float>(kSteps) + 0.5f)];
+  if (!(radiance > kBlack)) return 0;
+  if (radiance >= kWhite) return 255;
+  return kTable[index_of(radiance) - kFirst];
 }
 
 }  // namespace waretwin
