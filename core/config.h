@@ -25,9 +25,12 @@ using VisitFunction = std::function<void(Fields&)>;
 // Reads a YAML file into what `visit` lists. An unknown or missing key, a wrong type or a value out of range throws Error with file,
 // line, key, value, what was expected, and for an unknown key the nearest known one. Duplicate keys, anchors that recurse and
 // documents deeper than 32 levels are refused.
-void read_config(const std::filesystem::path& file, const VisitFunction& visit);
+// `kPartial`: keys that a file must name may be missing, as in one that only changes some values of what is there.
+enum class Completeness { kWhole, kPartial };
+void read_config(const std::filesystem::path& file, const VisitFunction& visit, Completeness completeness = Completeness::kWhole);
 // The same for text; `name` stands for the file in messages.
-void read_config_text(const std::string& yaml, const std::filesystem::path& name, const VisitFunction& visit);
+void read_config_text(const std::string& yaml, const std::filesystem::path& name, const VisitFunction& visit,
+                      Completeness completeness = Completeness::kWhole);
 
 // Applies settings in one visit; of two for the same key the later one wins, and a preset never undoes what stands beside it. They
 // change what exists: an index beyond a list or a new name in a map is an Error. Throws Error for a key that no visited field has,

@@ -13,7 +13,8 @@ namespace {
 
 class YamlReader : public Fields {
  public:
-  YamlReader(const std::filesystem::path& name, std::shared_ptr<const YamlNode> root) : name_(name), document_(std::move(root)) {
+  YamlReader(const std::filesystem::path& name, std::shared_ptr<const YamlNode> root, Completeness completeness)
+      : name_(name), document_(std::move(root)), completeness_(completeness) {
     require_map(*document_, "", "the file");
     levels_.push_back({Kind::group, document_.get(), ""});
   }
@@ -113,7 +114,7 @@ class YamlReader : public Fields {
   const YamlNode::Entry* consume(const std::string& key, const std::string& expected, const FieldRule& rule) {
     level().known.push_back(key);
     const YamlNode::Entry* entry = level().node->find(key);
-    if (!entry && rule.required && !level().missing) {
+    if (!entry && rule.required && completeness_ == Completeness::kWhole && !level().missing) {
       level().missing.emplace(name_, level().node->line, "key '" + path_of(key) + "' is missing; expected " + expected);
     }
     return entry;
@@ -143,18 +144,19 @@ class YamlReader : public Fields {
 
   std::filesystem::path name_;
   std::shared_ptr<const YamlNode> document_;
+  Completeness completeness_;
   std::vector<Level> levels_;
 };
 
 }  // namespace
 
-void read_config(const std::filesystem::path& file, const VisitFunction& visit) {
+void read_config(const std::filesystem::path& file, const VisitFunction& visit, Completeness completeness) {
   constexpr std::uintmax_t kLargest = std::uintmax_t{16} << 20;
-  read_config_text(read_file(file, kLargest), file, visit);
+  read_config_text(read_file(file, kLargest), file, visit, completeness);
 }
 
-void read_config_text(const std::string& yaml, const std::filesystem::path& name, const VisitFunction& visit) {
-  YamlReader reader(name, parse_yaml(yaml, name));
+void read_config_text(const std::string& yaml, const std::filesystem::path& name, const VisitFunction& visit, Completeness completeness) {
+  YamlReader reader(name, parse_yaml(yaml, name), completeness);
   visit(reader);
   reader.finish();
 }

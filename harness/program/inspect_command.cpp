@@ -79,7 +79,7 @@ int inspect(const InspectOptions& options) {
   const std::vector<Setting> settings = options.common.settings();
   if (extension == ".yaml" || extension == ".yml") {
     const RunConfig defaults;
-    RunConfig config = load_run_config(file, defaults, settings);
+    RunConfig config = load_run_config(file, defaults, "", settings);
     std::cout << (options.keys ? describe_config([&](Fields& f) { config.visit(f); }) : describe_scenario(config.scenario));
     if (!options.keys) std::cout << "route: " << to_seconds(RobotMotion(config.scenario.robot).duration()) << " s\n";
     return 0;

@@ -35,6 +35,7 @@ int map(const MapOptions& options) {
   if (!std::filesystem::exists(std::filesystem::path(options.recording) / "recording.yaml")) {
     config.mapper.segment.planes.ground = "lowest_plane";
   }
+  if (!options.mapping.config_file.empty()) read_resolved_config(options.mapping.config_file, [&](Fields& f) { config.visit(f); });
   apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
 
   const auto stream = open_recording(options.recording, config.recording);
@@ -76,6 +77,7 @@ Command add_map_command(CLI::App& program) {
       *command, "none (default: no objects); a model's folder or file; yolo with --set mapper.model=FILE; a JSON file with boxes");
   command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
       ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
+  command->get_option("--config")->excludes("--poses");
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n\n"

@@ -22,6 +22,13 @@ void MappingOptions::add_to(CLI::App& command, const std::string& detector_help)
       ->type_name("N")
       ->check(whole_number())
       ->check(CLI::Range(0, 1000000000));
+  CLI::Option* from_file =
+      command
+          .add_option("--config", config_file,
+                      "an earlier run's config.yaml, or a part of one: repeats it; --seed and --set still change single values")
+          ->type_name("FILE");
+  // The file settles what these would.
+  for (const char* settled : {"--profile", "--detector", "--rate", "--frames"}) from_file->excludes(settled);
 }
 
 MapperConfig MappingOptions::mapper_config() const {

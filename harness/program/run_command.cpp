@@ -35,7 +35,7 @@ RunConfig configure(const RunOptions& options) {
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
   for (Setting& setting : options.common.settings()) settings.push_back(std::move(setting));
-  return load_run_config(options.scenario, std::move(config), settings);
+  return load_run_config(options.scenario, std::move(config), options.mapping.config_file, settings);
 }
 
 void print_summary(const char* name, const ScoreSummary& s) {
@@ -60,7 +60,7 @@ int run(const RunOptions& options) {
     RunConfig resolved = config;
     folder->write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
   };
-  if (!options.mapping.detector && config.truth_stages.detector) {
+  if (!options.mapping.detector && options.mapping.config_file.empty() && config.truth_stages.detector) {
     spdlog::info("boxes come from the truth: no detector model was named (--detector)");
   }
   ClosedLoopResult result;
@@ -91,9 +91,11 @@ Command add_run_command(CLI::App& program) {
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
   command->add_option("--association", options->association, "map or truth")->capture_default_str()->check(CLI::IsMember({"map", "truth"}));
+  for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->common.add_to(*command);
   command->footer(
-      "Example:\n  waretwin run scenes/agiprobot/scenario.yaml --out out/agiprobot --profile paper --detector truth\n\n"
+      "Example:\n  waretwin run scenes/agiprobot/scenario.yaml --out out/agiprobot --profile paper --detector truth\n"
+      "  waretwin run scenes/agiprobot/scenario.yaml --out out/again --config out/agiprobot/config.yaml\n\n"
       "`waretwin inspect SCENARIO --keys` lists every key for --set.");
   return {command, [options] { return run(*options); }};
 }

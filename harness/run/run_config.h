@@ -31,15 +31,16 @@ struct RunConfig {
   ScoringRules score;
 
   void visit(Fields& f);
-  // All but the scenario's own keys.
-  void visit_groups(Fields& f);
 };
 
-// Reads a scenario and applies settings to the whole tree; `base` holds everything but the scenario. Throws Error for a key that the tree
-// does not have, naming the nearest one.
-RunConfig load_run_config(const std::filesystem::path& scenario, RunConfig base, const std::vector<Setting>& settings);
+// Reads a scenario; then what `config` (a run's config.yaml or a part of one; empty: none) says, then the settings, each over the whole
+// tree. `base` holds everything but the scenario. Throws Error for a key that the tree does not have, naming the nearest one.
+RunConfig load_run_config(const std::filesystem::path& scenario, RunConfig base, const std::filesystem::path& config,
+                          const std::vector<Setting>& settings);
 
 // The resolved configuration as YAML, with the program's version: config.yaml.
 std::string resolved_config(const VisitFunction& visit, const std::string& source);
+// Takes such a file back, or a part of one: keys that it leaves out keep their values.
+void read_resolved_config(const std::filesystem::path& file, const VisitFunction& visit);
 
 }  // namespace waretwin

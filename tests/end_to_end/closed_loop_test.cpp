@@ -77,6 +77,31 @@ TEST(ClosedLoop, ChangesWithTheSeedOnly) {
   EXPECT_NE(read_file(folder.path() / "other/config.yaml").find("seed: 99"), std::string::npos);
 }
 
+TEST(ClosedLoop, IsRepeatedFromItsOwnConfiguration) {
+  const TemporaryFolder folder;
+  const Json first = run("--profile paper --depth truth --seed 7 --frames 31 --set mapper.integrate.voxel_m=0.03", folder.path() / "first");
+  const std::string config = "--config '" + (folder.path() / "first/config.yaml").string() + "' ";
+  const Json again = run(config, folder.path() / "again");
+  const Json changed = run(config + "--set mapper.integrate.voxel_m=0.05", folder.path() / "changed");
+  ASSERT_TRUE(first.is_object() && again.is_object() && changed.is_object());
+  EXPECT_EQ(first["digest"], again["digest"]);
+  EXPECT_EQ(first["stages"], again["stages"]);
+  EXPECT_EQ(read_file(folder.path() / "first/config.yaml"), read_file(folder.path() / "again/config.yaml"));
+  EXPECT_NE(first["digest"], changed["digest"]);
+}
+
+TEST(ClosedLoop, TakesAModelForDetector) {
+  WARETWIN_NEED_DATA("yolo_fastest");
+  const TemporaryFolder folder;
+  const Json score =
+      run("--profile paper --detector '" + test::shared_data("yolo_fastest").string() + "' --frames 121 --set mapper.detect.confidence=0.1",
+          folder.path());
+  ASSERT_TRUE(score.is_object());
+  EXPECT_EQ(score["stages"]["detector"], "yolo");
+  EXPECT_GT(score["timing_ms"]["detect"]["median"].get<double>(), 0.0);
+  EXPECT_EQ(score["summary"]["matched"], 0) << "the model knows no conveyors";
+}
+
 TEST(ClosedLoop, PutsTheTruthInPlaceOfStages) {
   const TemporaryFolder folder;
   const Json score = run("--profile paper --detector truth --poses truth --depth truth --association truth --frames 31", folder.path());

@@ -97,6 +97,36 @@ TEST(Program, NoticesAFullDisk) {
   EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --size 320x180 --out /dev/full/picture.png"), "/dev/full");
 }
 
+TEST(Program, NoticesADiskThatFillsUpDuringARun) {
+  const TemporaryFolder folder;
+  const auto out = folder.path() / "out";
+  // Large enough for the small files that come first, too small for the map.
+  const std::string limit = "ulimit -f 64; trap '' XFSZ;";
+  const auto run = test::waretwin(
+      "run " + agiprobot() + " --out '" + out.string() + "' --quiet --profile paper --frames 2 --set simulation.colour=false", limit);
+  EXPECT_ONE_LINE(run, out.string());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_LT(entry.file_size(), 64u * 512u) << entry.path() << " is half-written";
+  }
+  EXPECT_FALSE(std::filesystem::exists(out / "score.json")) << "the score is written last";
+
+  WARETWIN_NEED_DATA("rgbd_sun3d");
+  const auto map =
+      test::waretwin("map '" + test::shared_data("rgbd_sun3d").string() + "' --out '" + out.string() + "' --quiet --frames 1", limit);
+  EXPECT_ONE_LINE(map, out.string());
+}
+
+TEST(Program, RefusesOptionsThatAConfigurationSettles) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "config.yaml";
+  write_file(file, "mapper:\n  rate_hz: 1\n  voxel: 3\n");
+  const std::string run = "run " + agiprobot() + " --out '" + folder.path().string() + "/out' --config '" + file.string() + "' ";
+  EXPECT_ONE_LINE(test::waretwin(run + "--profile paper"), "--profile");
+  EXPECT_ONE_LINE(test::waretwin(run), "config.yaml:3");
+  EXPECT_ONE_LINE(test::waretwin("run " + agiprobot() + " --out x --config none.yaml"), "none.yaml");
+}
+
 TEST(Program, RendersAPicture) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "picture.png").string();
