@@ -122,7 +122,7 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   write_map_glb(folder.file("map.glb"), mesh, objects);
   save_map(folder.file("map.waretwin"), objects, *map.volume);
   write_occupancy(folder.file("occupancy.pgm"), make_occupancy_grid(*map.volume, OccupancyConfig{}));
-  write_cuboids(folder.file("cuboids.json"), objects);
+  write_cuboids(folder.file("cuboids.json"), upright ? "world" : "upright", objects);
   std::vector<StampedPose> trajectory = stamped(map.trajectory);
   for (StampedPose& point : trajectory) point.X_WB = map.X_RW * point.X_WB;
   folder.write("trajectory.tum", tum_text(trajectory));

@@ -5,7 +5,6 @@
 
 #include "core/files.h"
 #include "mapper/output/map_files.h"
-#include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
 
@@ -37,7 +36,7 @@ void write_occupancy(const std::filesystem::path& file, const OccupancyGrid& gri
                        ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
 }
 
-void write_cuboids(const std::filesystem::path& file, const ObjectList& objects) {
+void write_cuboids(const std::filesystem::path& file, const std::string& frame, const ObjectList& objects) {
   std::vector<const MappedObject*> order;
   for (const MappedObject& object : objects) order.push_back(&object);
   std::sort(order.begin(), order.end(), [](const MappedObject* a, const MappedObject* b) { return a->id < b->id; });
@@ -54,24 +53,9 @@ void write_cuboids(const std::filesystem::path& file, const ObjectList& objects)
     list.push_back(std::move(entry));
   }
   nlohmann::ordered_json root;
-  root["frame"] = objects.empty() ? std::string("world") : objects.front().cuboid.frame;
+  root["frame"] = frame;
   root["objects"] = std::move(list);
   write_file(file, root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-}
-
-void write_trajectory(const std::filesystem::path& file, const std::vector<std::pair<Stamp, Pose>>& poses) {
-  std::string text;
-  for (const auto& [stamp, pose] : poses) {
-    // From the integer nanoseconds: a double does not hold an epoch stamp to the last digit.
-    text += stamp_text(stamp);
-    Eigen::Quaterniond q(pose.linear());
-    q.normalize();
-    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-    const Eigen::Vector3d p = pose.translation();
-    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) text += " " + nine(value);
-    text += "\n";
-  }
-  write_file(file, text);
 }
 
 }  // namespace waretwin

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <filesystem>
-#include <utility>
+#include <string>
 #include <vector>
 
-#include "core/pose.h"
-#include "core/stamp.h"
 #include "mapper/integrate/mesher.h"
 #include "mapper/integrate/occupancy.h"
 #include "mapper/object_list.h"
@@ -33,9 +31,6 @@ void write_map_glb(const std::filesystem::path& file, const SurfaceMesh& mesh, c
 void write_occupancy(const std::filesystem::path& file, const OccupancyGrid& grid);
 
 // {"frame":"world","objects":[{"id","class","centre","yaw","size","score"}]}, canonical cuboids, ascending by id.
-void write_cuboids(const std::filesystem::path& file, const ObjectList& objects);
-
-// One line a pose: stamp in seconds, tx ty tz in metres, qx qy qz qw; 9 decimals, qw >= 0 (the TUM format).
-void write_trajectory(const std::filesystem::path& file, const std::vector<std::pair<Stamp, Pose>>& poses);
+void write_cuboids(const std::filesystem::path& file, const std::string& frame, const ObjectList& objects);
 
 }  // namespace waretwin

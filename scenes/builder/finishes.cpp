@@ -65,18 +65,16 @@ Finish concrete_floor() {
   return textured(t, 3.0, 3.0, 0.0, 0.75, 0.5);
 }
 
+// Worn streaks: whole patches of a few centimetres, so that no camera resolves them into specks.
 Finish tyre_marks() {
-  cv::Mat t(128, 512, CV_8UC4, Scalar(96, 96, 98, 0));
-  const cv::Mat gaps = tiling_noise(512, 128, 32, 3, "tyre gaps");
+  cv::Mat t(128, 512, CV_8UC4, Scalar(138, 138, 140, 0));
+  const cv::Mat patches = tiling_noise(512, 128, 16, 2, "tyre gaps");
   const cv::Mat fade = tiling_noise(512, 128, 4, 2, "tyre fade");
-  const RandomStream random(0, "tyre", "specks");
   for (int y = 0; y < t.rows; ++y) {
     const bool groove = (y / 8) % 4 == 3;
     for (int x = 0; x < t.cols; ++x) {
-      const bool lug = ((x + y / 2) / 6) % 3 != 0;
-      const double ink = static_cast<double>(gaps.at<float>(y, x)) * 0.5 + static_cast<double>(fade.at<float>(y, x)) * 0.5;
-      const double speck = random.uniform(static_cast<std::uint64_t>(y * t.cols + x));
-      t.at<cv::Vec4b>(y, x)[3] = !groove && lug && speck < 2.6 * (ink - 0.42) ? 255 : 0;
+      const double ink = 0.5 * static_cast<double>(patches.at<float>(y, x)) + 0.5 * static_cast<double>(fade.at<float>(y, x));
+      t.at<cv::Vec4b>(y, x)[3] = !groove && ink > 0.5 ? 255 : 0;
     }
   }
   Finish f = textured(t, 1.6, 0.12, 0, 0.8, 0.2);

@@ -163,7 +163,7 @@ TEST(MapFiles, OccupancyAsMapServerReadsIt) {
 
 TEST(MapFiles, CuboidsAreCanonicalAndOrderedById) {
   const test::TemporaryFolder folder;
-  write_cuboids(folder.path() / "cuboids.json", {object(6, "chair"), object(5, "conveyor")});
+  write_cuboids(folder.path() / "cuboids.json", "world", {object(6, "chair"), object(5, "conveyor")});
   const auto json = nlohmann::json::parse(read_file(folder.path() / "cuboids.json"));
   EXPECT_EQ(json["frame"], "world");
   ASSERT_EQ(json["objects"].size(), 2u);
@@ -173,15 +173,6 @@ TEST(MapFiles, CuboidsAreCanonicalAndOrderedById) {
   EXPECT_EQ(first["size"], nlohmann::json({2.0, 0.5, 0.9}));
   EXPECT_NEAR(first["yaw"].get<double>(), 0.3 + M_PI / 2, 1e-12);
   EXPECT_EQ(first["score"], 0.75);
-}
-
-TEST(MapFiles, TrajectoryInTumFormat) {
-  const test::TemporaryFolder folder;
-  Pose X = make_upright_pose(1.0, -2.5, 0.0, 2.0 * M_PI / 3.0 + 2.0 * M_PI);
-  write_trajectory(folder.path() / "t.tum", {{40'000'000, Pose::Identity()}, {1'305'031'102'175'304'001, X}});
-  EXPECT_EQ(read_file(folder.path() / "t.tum"),
-            "0.040000000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 1.000000000\n"
-            "1305031102.175304001 1.000000000 -2.500000000 0.000000000 0.000000000 0.000000000 0.866025404 0.500000000\n");
 }
 
 TEST(MapFiles, MissingFolderIsAnError) {
