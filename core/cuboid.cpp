@@ -173,7 +173,7 @@ double iou_3d(const Cuboid& a, const Cuboid& b) {
 Cuboid minimum_area_cuboid(const std::vector<Eigen::Vector3d>& points, const std::string& frame) {
   if (points.empty()) throw Error("no points; expected at least one to put a box around");
   // Around the first point, so that a hall far from its origin loses no digits.
-  const Eigen::Vector3d origin = points.front();
+  const Eigen::Vector3d& origin = points.front();
   Polygon footprint;
   footprint.reserve(points.size());
   double low = 0.0;

@@ -13,10 +13,9 @@ namespace waretwin {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr int kFirstLevel = 2;  // the pyramid begins with tiles of 4 x 4 pixels
 
-// Smallest and largest depth in square tiles of 2^level pixels. A tile of which less than half is valid has smallest depth 0: nothing
-// behind it counts as seen.
+// Smallest and largest depth in square tiles of 4 x 4, 8 x 8, 16 x 16 ... pixels. A tile of which less than half is valid has smallest
+// depth 0: nothing behind it counts as seen.
 class DepthPyramid {
  public:
   DepthPyramid(const cv::Mat& depth) {
