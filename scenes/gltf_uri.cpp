@@ -35,11 +35,11 @@ std::string percent_decoded(std::string_view uri) {
   return text;
 }
 
-std::array<std::int8_t, 256> base64_table() {
-  std::array<std::int8_t, 256> table;
+std::array<int, 256> base64_table() {
+  std::array<int, 256> table;
   table.fill(-1);
   const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < digits.size(); ++i) table[static_cast<unsigned char>(digits[i])] = static_cast<std::int8_t>(i);
+  for (std::size_t i = 0; i < digits.size(); ++i) table[static_cast<unsigned char>(digits[i])] = static_cast<int>(i);
   return table;
 }
 
@@ -53,7 +53,7 @@ bool is_data_uri(std::string_view uri) {
 }
 
 std::string decode_data_uri(std::string_view uri) {
-  static const std::array<std::int8_t, 256> table = base64_table();
+  static const std::array<int, 256> table = base64_table();
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
     throw Error("data URI is not base64; expected data:...;base64,...");

@@ -75,7 +75,7 @@ RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
 }
 
 std::filesystem::path RunFolder::file(const std::string& name) {
-  const std::filesystem::path path = path_ / name;
+  std::filesystem::path path = path_ / name;
   make_folder(path.parent_path());
   return path;
 }

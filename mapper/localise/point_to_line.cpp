@@ -14,7 +14,7 @@ namespace {
 // is the global minimum (More and Sorensen 1983).
 Eigen::Vector2d minimise_on_circle(const Eigen::Matrix2d& A, const Eigen::Vector2d& b, const Eigen::Vector2d& fallback) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
-  const Eigen::Vector2d a = eigen.eigenvalues();  // ascending
+  const Eigen::Vector2d& a = eigen.eigenvalues();  // ascending
   const Eigen::Vector2d c = eigen.eigenvectors().transpose() * b;
   const double length = c.norm();
   if (length == 0.0 && a[0] == a[1]) return fallback;
