@@ -8,7 +8,7 @@ void DepthField::visit(Fields& f) {
   f("horizontal_deg", horizontal_deg, "width of the depth field", {.min = 1, .max = 179});
   f("vertical_deg", vertical_deg, "height of the depth field", {.min = 1, .max = 179});
   f("tilt_down_deg", tilt_down_deg, "how far the depth camera looks below the colour camera", {.min = -90, .max = 90});
-  f("hexagonal", hexagonal, "cut the corners as the illumination mask does");
+  f("shape", shape, "outline of the depth field", {.choices = {"hexagon", "circle", "rectangle"}});
 }
 
 void DepthNoise::visit(Fields& f) {
@@ -18,18 +18,76 @@ void DepthNoise::visit(Fields& f) {
   f("dropout_share", dropout_share, "share of pixels without a reading", {.min = 0, .max = 1});
 }
 
+namespace {
+
+const std::vector<std::string>& presets() {
+  static const std::vector<std::string> names = {"azure_kinect", "femto_bolt", "azure_kinect_gaussian", "ideal"};
+  return names;
+}
+
+struct DepthMode {
+  const char* name;
+  int width, height;
+  double focal_px;
+  double horizontal_deg, vertical_deg;
+  const char* shape;
+  double nearest_m, farthest_m, exposure_s;
+};
+
+// Data sheet. The chip has 1024 x 1024 pixels; NFOV reads its middle, 2x2 binning halves the resolution.
+const std::vector<DepthMode>& depth_modes() {
+  static const std::vector<DepthMode> modes = {
+      {"nfov_unbinned", 640, 576, 490.0, 75.0, 65.0, "hexagon", 0.50, 3.86, 0.0128},
+      {"nfov_2x2binned", 320, 288, 245.0, 75.0, 65.0, "hexagon", 0.50, 5.46, 0.0128},
+      {"wfov_2x2binned", 512, 512, 245.0, 120.0, 120.0, "circle", 0.25, 2.88, 0.0128},
+      {"wfov_unbinned", 1024, 1024, 490.0, 120.0, 120.0, "circle", 0.25, 2.21, 0.0203},
+  };
+  return modes;
+}
+
+std::vector<std::string> depth_mode_names() {
+  std::vector<std::string> names;
+  for (const DepthMode& mode : depth_modes()) names.emplace_back(mode.name);
+  return names;
+}
+
+}  // namespace
+
 CameraConfig CameraConfig::make(const std::string& preset) {
   CameraConfig camera;
   camera.preset = preset;
-  if (preset == "azure_kinect") return camera;
+  if (preset == "azure_kinect" || preset == "femto_bolt") return camera;
+  camera.depth_model = "gaussian";
+  if (preset == "azure_kinect_gaussian") return camera;
   if (preset == "ideal") {
-    camera.field = {.horizontal_deg = 179.0, .vertical_deg = 179.0, .tilt_down_deg = 0.0, .hexagonal = false};
+    camera.field = {.horizontal_deg = 179.0, .vertical_deg = 179.0, .tilt_down_deg = 0.0, .shape = "rectangle"};
     camera.noise.enabled = false;
     camera.depth_min_m = 0.05;
     camera.depth_max_m = 20.0;
     return camera;
   }
-  throw Error("camera preset '" + preset + "' is not known; expected azure_kinect or ideal");
+  throw Error("camera preset '" + preset + "' is not known; expected azure_kinect, femto_bolt, azure_kinect_gaussian or ideal");
+}
+
+void CameraConfig::set_depth_mode(const std::string& name) {
+  for (const DepthMode& mode : depth_modes()) {
+    if (mode.name != name) continue;
+    depth_mode = name;
+    time_of_flight.width = mode.width;
+    time_of_flight.height = mode.height;
+    time_of_flight.focal_px = mode.focal_px;
+    time_of_flight.exposure_s = mode.exposure_s;
+    // A mode's range ends where dark surfaces (15 %) give just enough light: the light of the others follows from theirs.
+    const double narrow_m = depth_modes().front().farthest_m;
+    time_of_flight.illumination = mode.farthest_m * mode.farthest_m / (narrow_m * narrow_m);
+    field.horizontal_deg = mode.horizontal_deg;
+    field.vertical_deg = mode.vertical_deg;
+    field.shape = mode.shape;
+    depth_min_m = mode.nearest_m;
+    depth_max_m = mode.farthest_m;
+    return;
+  }
+  throw Error("depth mode '" + name + "' is not known; expected nfov_unbinned, nfov_2x2binned, wfov_2x2binned or wfov_unbinned");
 }
 
 Intrinsics CameraConfig::intrinsics() const {
@@ -38,7 +96,7 @@ Intrinsics CameraConfig::intrinsics() const {
 
 void CameraConfig::visit(Fields& f) {
   const std::string before = preset;
-  f("preset", preset, "the product whose values the other keys start from", {.choices = {"azure_kinect", "ideal"}});
+  f("preset", preset, "the product whose values the other keys start from", {.choices = presets()});
   if (preset != before) {
     const Mount kept = mount;
     *this = make(preset);
@@ -49,11 +107,16 @@ void CameraConfig::visit(Fields& f) {
   f("horizontal_fov_deg", horizontal_fov_deg, "field of view of the colour camera", {.min = 1, .max = 170});
   f("vertical_fov_deg", vertical_fov_deg, "field of view of the colour camera", {.min = 1, .max = 170});
   f("rate_hz", rate_hz, "frames a second", {.min = 0.01, .max = 1000});
+  const std::string mode_before = depth_mode;
+  f("depth_mode", depth_mode, "mode of the Azure Kinect: resolution, field, range and light", {.choices = depth_mode_names()});
+  if (depth_mode != mode_before) set_depth_mode(depth_mode);
+  f("depth_model", depth_model, "how depth comes about", {.choices = {"time_of_flight", "gaussian"}});
   f("depth_min_m", depth_min_m, "no depth nearer than this", {.min = 0.001, .max = 100});
   f("depth_max_m", depth_max_m, "no depth beyond this", {.min = 0.001, .max = 65.535});
   if (depth_max_m <= depth_min_m) f.reject("depth_max_m", "must be greater than depth_min_m");
-  f.group("field", field, "where in the colour image there is depth");
-  f.group("noise", noise, "error of the depth reading");
+  f.group("field", field, "directions in which the depth camera measures");
+  f.group("time_of_flight", time_of_flight, "depth_model time_of_flight: lens, light and errors");
+  f.group("noise", noise, "depth_model gaussian: error of the depth reading");
   f.group("mount", mount, "place on the vehicle");
 }
 

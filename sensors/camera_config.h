@@ -6,20 +6,21 @@
 #include "core/fields.h"
 #include "sensors/intrinsics.h"
 #include "sensors/mount.h"
+#include "sensors/time_of_flight_config.h"
 
 namespace waretwin {
 
-// The part of the colour image in which the camera has depth. Azure Kinect: the depth camera's hexagonal field of interest, 75 x 65 deg,
-// tilted 6 deg down from the colour camera (shared data sheet values; NFOV).
+// The directions in which a depth camera measures, seen from its own lens, and how far it looks down from the colour camera. Azure Kinect:
+// the illuminated field of interest (data sheet; NFOV).
 struct DepthField {
   double horizontal_deg = 75.0;
   double vertical_deg = 65.0;
   double tilt_down_deg = 6.0;
-  bool hexagonal = true;  // corners cut as by the illumination mask; false: the full rectangle
+  std::string shape = "hexagon";  // hexagon, circle (an ellipse where the angles differ) or rectangle
   void visit(Fields& f);
 };
 
-// First-order error of a depth reading: Gaussian with standard deviation base + growth * z^2, independent from pixel to pixel.
+// The simplest error of a depth reading: Gaussian with standard deviation base + growth * z^2, independent from pixel to pixel.
 struct DepthNoise {
   bool enabled = true;
   // Azure Kinect: about 1 mm at 1 m and 5 mm at 3 m on bright diffuse targets; the maker promises <= 17 mm.
@@ -35,15 +36,24 @@ struct CameraConfig {
   int width = 1280, height = 720;  // pixels
   double horizontal_fov_deg = 90.0, vertical_fov_deg = 59.0;
   double rate_hz = 15.0;
+  std::string depth_mode = "nfov_unbinned";  // of the Azure Kinect and the Femto Bolt; see set_depth_mode
+  // How depth comes about. time_of_flight: its own lens and light, then warped into the colour view (`time_of_flight`). gaussian: straight
+  // in the colour view (`noise`).
+  std::string depth_model = "time_of_flight";
   double depth_min_m = 0.5, depth_max_m = 3.86;
   DepthField field;
+  TimeOfFlightConfig time_of_flight;
   DepthNoise noise;
   Mount mount = {.z_m = 1.4, .pitch_deg = 45.0};
 
-  // Presets: azure_kinect (NFOV unbinned), ideal (same geometry without field mask and noise). Throws Error naming the known ones.
+  // Presets: azure_kinect, femto_bolt (the same depth module), azure_kinect_gaussian (one lens, Gaussian error), ideal (the same colour
+  // view, depth everywhere in it, without error). Throws Error naming the known ones.
   static CameraConfig make(const std::string& preset);
+  // Resolution, field, range, exposure and light of nfov_unbinned, nfov_2x2binned, wfov_2x2binned or wfov_unbinned (data sheet); throws
+  // Error for another.
+  void set_depth_mode(const std::string& mode);
   Intrinsics intrinsics() const;
-  // A `preset` that changes sets all other fields but the mount, before those that follow it.
+  // A `preset` that changes sets all other fields but the mount, and a `depth_mode` what belongs to it, before those that follow it.
   void visit(Fields& f);
 };
 

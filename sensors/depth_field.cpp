@@ -6,16 +6,22 @@
 
 namespace waretwin {
 
+bool inside_outline(const DepthField& field, double x, double y) {
+  const double across = std::abs(x) / std::tan(to_radians(0.5 * field.horizontal_deg));
+  const double down = std::abs(y) / std::tan(to_radians(0.5 * field.vertical_deg));
+  if (across > 1.0 || down > 1.0) return false;
+  if (field.shape == "hexagon") return across + 0.5 * down <= 1.0;
+  if (field.shape == "circle") return across * across + down * down <= 1.0;
+  return true;
+}
+
 bool in_depth_field(const DepthField& field, const Eigen::Vector3d& ray_C) {
   const double tilt = to_radians(field.tilt_down_deg);
   // Tilting the depth camera down turns its z axis towards the colour camera's y axis, which points down.
   const double z = std::cos(tilt) * ray_C.z() + std::sin(tilt) * ray_C.y();
   const double y = std::cos(tilt) * ray_C.y() - std::sin(tilt) * ray_C.z();
   if (z <= 0.0) return false;
-  const double across = std::abs(ray_C.x() / z) / std::tan(to_radians(0.5 * field.horizontal_deg));
-  const double down = std::abs(y / z) / std::tan(to_radians(0.5 * field.vertical_deg));
-  if (across > 1.0 || down > 1.0) return false;
-  return !field.hexagonal || across + 0.5 * down <= 1.0;
+  return inside_outline(field, ray_C.x() / z, y / z);
 }
 
 cv::Mat depth_field_mask(const CameraConfig& camera) {

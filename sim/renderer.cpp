@@ -380,6 +380,8 @@ Renderer::Renderer(std::shared_ptr<const RayCaster> ray_caster, const RenderOpti
 
 Renderer::~Renderer() = default;
 
+const Surfaces& Renderer::surfaces() const { return state_->surfaces; }
+
 FrameImages Renderer::render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request) {
   State& s = *state_;
   s.width = intrinsics.width;

@@ -11,6 +11,7 @@
 #include "sim/frame_images.h"
 #include "sim/ray_caster.h"
 #include "sim/render_options.h"
+#include "sim/surfaces.h"
 
 namespace waretwin {
 
@@ -34,6 +35,9 @@ class Renderer {
 
   // The same bytes for the same arguments, whatever was rendered before and at any thread count.
   FrameImages render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request);
+
+  // The hall's surfaces, for sensors that look with other light; as long as the renderer lives.
+  const Surfaces& surfaces() const;
 
  private:
   struct State;

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "sensors/depth_noise.h"
 #include "sensors/laser_noise.h"
 #include "sensors/odometry_model.h"
+#include "sim/depth_camera.h"
 #include "sim/laser_scanner.h"
 #include "sim/ray_caster.h"
 #include "sim/renderer.h"
@@ -78,7 +78,7 @@ struct SimulatedStream::State {
   std::shared_ptr<const RayCaster> ray_caster;
   RobotMotion motion;
   Renderer renderer;
-  std::map<std::string, DepthNoiseModel> depth_noise;
+  std::map<std::string, std::unique_ptr<DepthCamera>> depth_cameras;
   std::map<std::string, LaserNoiseModel> laser_noise;
   OdometryModel odometry;
   StreamInfo info;
@@ -117,7 +117,7 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
   }
   for (const auto& [name, camera] : sensors.cameras) {
     sources.push_back({SensorKind::kCamera, name, camera.rate_hz, turns_until(end, camera.rate_hz)});
-    depth_noise.emplace(name, DepthNoiseModel(camera, scenario.seed, name));
+    depth_cameras.emplace(name, DepthCamera::make(camera, scenario.seed, name, ray_caster, renderer.surfaces()));
   }
   describe();
 }
@@ -158,8 +158,10 @@ void SimulatedStream::State::render(RgbdFrame& frame) {
   if (config.truth_depth) {
     frame.depth = depth_from_millimetres(depth_to_millimetres(images.depth));
   } else {
-    frame.depth = images.depth.clone();
-    depth_noise.at(frame.sensor).apply(frame.depth, frame.stamp);
+    const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
+    DepthReading reading = depth_cameras.at(frame.sensor)->read(images.depth, frame.stamp, at);
+    frame.depth = reading.registered;
+    frame.native_depth = reading.native;
   }
   if (truth.stamp == frame.stamp && truth.sensor == frame.sensor) {
     truth.instances = images.instances;

@@ -186,7 +186,7 @@ TEST(DepthField, HasTheHexagonsShapeAndTilt) {
   EXPECT_TRUE(in_depth_field(field, direction(20.8, -32.4)));
   EXPECT_FALSE(in_depth_field(field, direction(21.2, -32.4)));
   EXPECT_FALSE(in_depth_field(field, {0, 0, -1}));
-  field.hexagonal = false;
+  field.shape = "rectangle";
   EXPECT_TRUE(in_depth_field(field, direction(37.4, 32.4)));
   field.tilt_down_deg = 6;
   EXPECT_TRUE(in_depth_field(field, direction(0, 38.4)));
