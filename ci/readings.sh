@@ -7,11 +7,7 @@ cd "$(dirname "$0")/.."
 out="${1:-out/readings}"
 shift || true
 ci/build.sh release
-
-# The value of a key in one of score.json's groups.
-value() {
-  sed -n "/^  \"$2\": {/,/^  }/s/^ *\"$3\": *\([^,]*\),\{0,1\}$/\1/p" "$1/score.json" | head -n 1
-}
+source ci/score_value.sh
 
 row() {
   local name="$1"

@@ -1,5 +1,9 @@
 #include "sensors/camera_config.h"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "core/error.h"
 
 namespace waretwin {
@@ -92,6 +96,17 @@ void CameraConfig::set_depth_mode(const std::string& name) {
 
 Intrinsics CameraConfig::intrinsics() const {
   return Intrinsics::from_field_of_view(width, height, to_radians(horizontal_fov_deg), to_radians(vertical_fov_deg));
+}
+
+Lens CameraConfig::depth_lens() const {
+  const TimeOfFlightConfig& t = time_of_flight;
+  double focal = t.focal_px;
+  if (!t.lens_distortion) {
+    focal = std::min(0.5 * t.width / std::tan(to_radians(0.5 * field.horizontal_deg)),
+                     0.5 * t.height / std::tan(to_radians(0.5 * field.vertical_deg)));
+  }
+  return Lens(Intrinsics::checked(t.width, t.height, focal, focal, 0.5 * (t.width - 1), 0.5 * (t.height - 1)),
+              t.lens_distortion ? t.lens : Distortion{});
 }
 
 void CameraConfig::visit(Fields& f) {

@@ -53,6 +53,8 @@ struct CameraConfig {
   // Error for another.
   void set_depth_mode(const std::string& mode);
   Intrinsics intrinsics() const;
+  // Of the time-of-flight camera. Without distortion, the pinhole lens through which the field just fits into the image.
+  Lens depth_lens() const;
   // A `preset` that changes sets all other fields but the mount, and a `depth_mode` what belongs to it, before those that follow it.
   void visit(Fields& f);
 };

@@ -19,7 +19,7 @@ struct RgbdFrame {
   std::string sensor;
   cv::Mat colour;  // height x width, CV_8UC3, BGR
   cv::Mat depth;   // height x width, CV_32FC1, metres along the optical axis (z), 0 = invalid; whole millimetres
-  // As the depth camera itself took it, in its own lens (TimeOfFlightConfig::make_lens); empty where the source has none.
+  // As the depth camera itself took it, in its own lens (CameraConfig::depth_lens); empty where the source has none.
   cv::Mat native_depth;  // CV_32FC1, metres along the depth camera's optical axis, 0 = invalid; whole millimetres
   // Pose that came with the recording, if any. Never set by the simulation.
   std::optional<Pose> recorded_X_WC;

@@ -24,7 +24,7 @@ constexpr double kWaves[2] = {4.0, 8.0};
 constexpr double kWiggleStep_m = 0.005;
 
 cv::Mat rays_in_field(const CameraConfig& camera) {
-  const Lens lens = camera.time_of_flight.make_lens();
+  const Lens lens = camera.depth_lens();
   cv::Mat rays(lens.intrinsics().height, lens.intrinsics().width, CV_32FC3, cv::Scalar::all(0));
   parallel_for(static_cast<std::size_t>(rays.rows), 8, [&](std::size_t begin, std::size_t end) {
     for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {

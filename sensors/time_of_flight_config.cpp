@@ -22,18 +22,13 @@ void TimeOfFlightConfig::visit(Fields& f) {
   f("max_indirect", max_indirect, "pixels with more multipath, over direct light, are invalid", {.min = 0, .max = 1000});
   f("outlier_m", outlier_m, "pixels farther than this (and 2 % of the range) from all but one neighbour are invalid",
     {.min = 0, .max = 10});
-  f("lens_distortion", lens_distortion, "false: a pinhole lens");
+  f("lens_distortion", lens_distortion, "false: a pinhole lens on whose image the same field fits");
   f("motion", motion, "false: all pulses at the frame's stamp");
   f("mixed_pixels", mixed_pixels, "false: a pixel sees its centre only");
   f("multipath", multipath, "false: no light by way of another surface");
   f("wiggle", wiggle, "false: no systematic error");
   f("noise", noise, "false: no random error");
   f("invalidation", invalidation, "false: every pixel in field and range is valid");
-}
-
-Lens TimeOfFlightConfig::make_lens() const {
-  return Lens(Intrinsics::checked(width, height, focal_px, focal_px, 0.5 * (width - 1), 0.5 * (height - 1)),
-              lens_distortion ? lens : Distortion{});
 }
 
 Pose TimeOfFlightConfig::X_CD(double tilt_down_deg) const {

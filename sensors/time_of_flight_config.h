@@ -43,7 +43,6 @@ struct TimeOfFlightConfig {
 
   void visit(Fields& f);
 
-  Lens make_lens() const;
   // The depth camera in the colour camera's frame, tilted down by `tilt_down_deg`.
   Pose X_CD(double tilt_down_deg) const;
   // Declared standard deviation of a range (metres) from the signal: noise_m * sqrt(signal + background) / signal. Photons counted in

@@ -1,6 +1,7 @@
 #include "harness/pictures/frame_pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
@@ -73,6 +74,33 @@ cv::Mat draw_depth(const cv::Mat& depth, double near_m, double far_m) {
   std::snprintf(text, sizeof text, "red %.1f m, blue %.1f m", near_m, far_m);
   draw_text(image, {12, image.rows - 14}, text, cv::Scalar(255, 255, 255), 0.6);
   return image;
+}
+
+cv::Mat draw_depth_error(const cv::Mat& sensor, const cv::Mat& ideal, double near_m, double far_m) {
+  constexpr float kFull = 0.05f;
+  cv::Mat error(sensor.size(), CV_8UC3, cv::Scalar::all(0));
+  for (int v = 0; v < sensor.rows; ++v) {
+    for (int u = 0; u < sensor.cols; ++u) {
+      const float truth = ideal.at<float>(v, u), reading = sensor.at<float>(v, u);
+      if (truth <= 0.0f) continue;
+      if (reading <= 0.0f) {
+        error.at<cv::Vec3b>(v, u) = {60, 60, 60};
+        continue;
+      }
+      const float e = std::clamp((reading - truth) / kFull, -1.0f, 1.0f);
+      const auto fade = cv::saturate_cast<uchar>(255.0f * (1.0f - std::abs(e)));
+      error.at<cv::Vec3b>(v, u) = e < 0.0f ? cv::Vec3b(255, fade, fade) : cv::Vec3b(fade, fade, 255);
+    }
+  }
+  cv::Mat panels, small;
+  const std::array<cv::Mat, 3> all = {draw_depth(ideal, near_m, far_m), draw_depth(sensor, near_m, far_m), error};
+  cv::hconcat(all.data(), all.size(), panels);
+  cv::resize(panels, small, {}, 0.5, 0.5, cv::INTER_NEAREST);
+  const int width = small.cols / 3;
+  draw_text(small, {12, 22}, "ideal", cv::Scalar::all(255), 0.6);
+  draw_text(small, {width + 12, 22}, "sensor", cv::Scalar::all(255), 0.6);
+  draw_text(small, {2 * width + 12, 22}, "error: blue 5 cm near, red 5 cm far, grey nothing", cv::Scalar::all(255), 0.6);
+  return small;
 }
 
 }  // namespace waretwin

@@ -8,6 +8,7 @@
 #include "harness/truth/truth_associator.h"
 #include "harness/truth/truth_localiser.h"
 #include "mapper/integrate/tsdf_volume.h"
+#include "sensors/depth_field.h"
 #include "sim/ray_caster.h"
 #include "sim/visibility.h"
 
@@ -53,17 +54,25 @@ void score_trajectories(const ClosedLoopResult& result, RunScore& score) {
 ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene, const std::function<void()>& ready,
                                  const std::function<void(double, const ObjectMap&)>& progress) {
   SimulatedStream stream(config.scenario, scene, config.simulation);
-  std::map<std::string, CameraConfig> cameras = config.scenario.sensors.cameras;
+  const std::map<std::string, CameraConfig>& cameras = config.scenario.sensors.cameras;
   std::unique_ptr<SurfaceCoverage> coverage;
   if (!cameras.empty() && !scene->objects.empty()) {
-    coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), std::move(cameras), config.scenario.robot);
+    coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), cameras, config.scenario.robot);
   }
 
+  std::map<std::string, cv::Mat> fields;
+  for (const auto& [name, camera] : cameras) fields[name] = depth_field_mask(camera);
+  DepthQualityMeter depth_quality;
   MappingHooks hooks;
   hooks.progress = progress;
   hooks.on_frame = [&](const Mapper::FrameResult& frame) {
-    if (coverage) coverage->add_frame(frame.frame.sensor, stream.last_frame_truth().X_WC);
+    const FrameTruth& truth = stream.last_frame_truth();
+    if (coverage) coverage->add_frame(frame.frame.sensor, truth.X_WC);
+    const CameraConfig& camera = cameras.at(frame.frame.sensor);
+    depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
+                      camera.depth_max_m);
   };
+  hooks.true_depth = [&](const RgbdFrame&) { return stream.last_frame_truth().ideal_depth; };
   Stages stages = stages_with_truth(config, stream);
   if (ready) ready();
   ClosedLoopResult result;
@@ -90,6 +99,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.stages = stage_names(config, stream.info());
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
+  if (!map.frames.empty()) score.depth = depth_quality.result();
   score.timing_ms = summarise_stages(result.mapping.frames);
   score.frames_simulated = map.frames_seen;
   score.frames_mapped = static_cast<int>(map.frames.size());

@@ -20,8 +20,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 class Album {
  public:
   bool wants(int frame) const { return frame % step_ == 0; }
-  void add(int frame, cv::Mat colour, cv::Mat depth) {
-    pages_.push_back({frame, std::move(colour), std::move(depth)});
+  void add(int frame, std::vector<FramePicture> pictures) {
+    pages_.push_back({frame, std::move(pictures)});
     if (pages_.size() < kPages) return;
     step_ *= 2;
     std::erase_if(pages_, [this](const Page& page) { return page.frame % step_ != 0; });
@@ -31,8 +31,7 @@ class Album {
     for (Page& page : pages_) {
       char name[48];
       std::snprintf(name, sizeof name, "frame-%04d", page.frame);
-      pictures.push_back({std::string(name) + ".colour", std::move(page.colour)});
-      pictures.push_back({std::string(name) + ".depth", std::move(page.depth)});
+      for (FramePicture& picture : page.pictures) pictures.push_back({std::string(name) + picture.name, std::move(picture.image)});
     }
     return pictures;
   }
@@ -41,7 +40,7 @@ class Album {
   static constexpr std::size_t kPages = 12;
   struct Page {
     int frame;
-    cv::Mat colour, depth;
+    std::vector<FramePicture> pictures;
   };
   int step_ = 1;
   std::vector<Page> pages_;
@@ -61,8 +60,13 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     const int index = static_cast<int>(source_times.size()) - 1;
     if (album.wants(index)) {
       const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
-      album.add(index, draw_frame(frame, mapper.map().objects, camera.intrinsics),
-                draw_depth(frame.frame.depth, camera.depth_min_m, std::min(camera.depth_max_m, 10.0)));
+      const double far_m = std::min(camera.depth_max_m, 10.0);
+      std::vector<FramePicture> pictures = {{".colour", draw_frame(frame, mapper.map().objects, camera.intrinsics)},
+                                            {".depth", draw_depth(frame.frame.depth, camera.depth_min_m, far_m)}};
+      if (hooks.true_depth) {
+        pictures.push_back({".depth_error", draw_depth_error(frame.frame.depth, hooks.true_depth(frame.frame), camera.depth_min_m, far_m)});
+      }
+      album.add(index, std::move(pictures));
     }
     if (hooks.on_frame) hooks.on_frame(frame);
   };

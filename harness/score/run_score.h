@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/score/depth_quality.h"
 #include "harness/score/object_score.h"
 #include "harness/score/trajectory_score.h"
 
@@ -35,6 +36,7 @@ struct RunScore {
   std::map<std::string, std::string> stages;  // who made what: detector, poses, depth, association
   ComparedLists objects;
   std::optional<TrajectoryScore> trajectory, trajectory_aligned;
+  std::optional<DepthQuality> depth;               // of the mapped frames
   std::map<std::string, TimingSummary> timing_ms;  // simulate, localise, detect, segment, associate, integrate, frame
   int frames_simulated = 0, frames_mapped = 0, frames_dropped = 0, frames_without_pose = 0;
   std::map<std::string, int> rejected;  // reasons why detections came to nothing

@@ -78,6 +78,14 @@ std::string score_json(const RunScore& score) {
   json["cpu"] = {{"model", cpu_model()}, {"features", cpu_features()}};
   json["stages"] = score.stages;
   add_objects(json, score.objects);
+  json["depth"] = nullptr;
+  if (score.depth) {
+    json["depth"]["valid_share"] = score.depth->valid_share;
+    json["depth"]["object_missing_share"] = score.depth->object_missing_share;
+    json["depth"]["flying_share"] = score.depth->flying_share;
+    json["depth"]["median_abs_error_m"] = score.depth->median_abs_error_m;
+    json["depth"]["p95_abs_error_m"] = score.depth->p95_abs_error_m;
+  }
   json["trajectory"] = nullptr;
   if (score.trajectory) {
     json["trajectory"] = trajectory_json(*score.trajectory);

@@ -33,7 +33,7 @@ TEST(Lens, RaysOfPixelsComeBackToThem) {
   for (const char* mode : {"nfov_unbinned", "nfov_2x2binned", "wfov_2x2binned", "wfov_unbinned"}) {
     CameraConfig camera;
     camera.set_depth_mode(mode);
-    const Lens lens = camera.time_of_flight.make_lens();
+    const Lens lens = camera.depth_lens();
     int rays = 0;
     for (int v = 0; v < lens.intrinsics().height; v += 7) {
       for (int u = 0; u < lens.intrinsics().width; u += 7) {
@@ -55,7 +55,7 @@ TEST(Lens, FieldsOfTheDepthModesFillTheirImages) {
   for (const char* mode : {"nfov_unbinned", "nfov_2x2binned", "wfov_2x2binned", "wfov_unbinned"}) {
     CameraConfig camera;
     camera.set_depth_mode(mode);
-    const Lens lens = camera.time_of_flight.make_lens();
+    const Lens lens = camera.depth_lens();
     const auto right = lens.project({std::tan(to_radians(0.5 * camera.field.horizontal_deg)), 0, 1});
     const auto below = lens.project({0, std::tan(to_radians(0.5 * camera.field.vertical_deg)), 1});
     ASSERT_TRUE(right && below) << mode;
@@ -63,6 +63,19 @@ TEST(Lens, FieldsOfTheDepthModesFillTheirImages) {
     EXPECT_LT(below->y(), lens.intrinsics().height - 0.5) << mode;
     EXPECT_GT(right->x(), 0.94 * lens.intrinsics().width) << mode;
     EXPECT_GT(below->y(), 0.94 * lens.intrinsics().height) << mode;
+  }
+}
+
+TEST(Lens, WithoutDistortionTheFieldStillFits) {
+  for (const char* mode : {"nfov_unbinned", "wfov_unbinned"}) {
+    CameraConfig camera;
+    camera.set_depth_mode(mode);
+    camera.time_of_flight.lens_distortion = false;
+    const Lens lens = camera.depth_lens();
+    const auto corner = lens.project(
+        {std::tan(to_radians(0.499 * camera.field.horizontal_deg)), std::tan(to_radians(0.499 * camera.field.vertical_deg)), 1});
+    ASSERT_TRUE(corner);
+    EXPECT_TRUE(lens.intrinsics().contains(corner->x(), corner->y())) << mode;
   }
 }
 

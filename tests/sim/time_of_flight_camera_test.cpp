@@ -174,7 +174,7 @@ TEST(TimeOfFlightCamera, MixIsWeightedByLight) {
   camera.time_of_flight.mixed_pixels = true;
   camera.time_of_flight.lens_distortion = false;
   camera.time_of_flight.width = 641;  // a pixel on the axis
-  const double pixel = 1.0 / camera.time_of_flight.focal_px;
+  const double pixel = 1.0 / camera.depth_lens().intrinsics().fx;
   Scene scene = fixtures::room(-2, 1.0f, -3, 3, 4);
   const int box = add_mesh(scene, fixtures::unit_box(), 0);
   // The camera looks along x; its right is -y. The step's edge lies a sixth of a pixel to the right of the axis at its own distance.
