@@ -1,6 +1,7 @@
 #include "sensors/laser_config.h"
 
 #include <numbers>
+#include <vector>
 
 #include "core/error.h"
 
@@ -12,16 +13,63 @@ void LaserNoise::visit(Fields& f) {
   f("bias_max_m", bias_max_m, "bound of the systematic part, drawn once per run", {.min = 0, .max = 1});
 }
 
+void LaserSpot::visit(Fields& f) {
+  f("mixed", mixed, "false: a beam without width");
+  f("dropouts", dropouts, "false: every surface is bright enough");
+  f("diameter_m", diameter_m, "width of the beam at the scanner", {.min = 0, .max = 1});
+  f("divergence_rad", divergence_rad, "how it widens", {.min = 0, .max = 0.5});
+  f("merge_m", merge_m, "echoes nearer to each other than this become one", {.min = 0, .max = 10});
+  f("min_signal", min_signal, "weaker echoes are not seen", {.min = 0, .max = 100});
+  f("masked_deg", masked_deg, "blind sectors where the vehicle itself stands: from, to, from, to ...", {.min = -360, .max = 360});
+  if (masked_deg.size() % 2 != 0) f.reject("masked_deg", "must hold pairs of angles, from and to");
+}
+
+bool LaserSpot::masks(double angle) const {
+  const double deg = to_degrees(angle);
+  for (std::size_t i = 0; i + 1 < masked_deg.size(); i += 2) {
+    if (deg >= masked_deg[i] && deg <= masked_deg[i + 1]) return true;
+  }
+  return false;
+}
+
+namespace {
+
+const std::vector<std::string>& presets() {
+  static const std::vector<std::string> names = {"sick_s300", "sick_tim571", "hokuyo_utm30lx", "ideal"};
+  return names;
+}
+
+}  // namespace
+
 LaserConfig LaserConfig::make(const std::string& preset) {
   LaserConfig laser;
   laser.preset = preset;
   if (preset == "sick_s300") return laser;
+  if (preset == "sick_tim571") {
+    // Data sheet: 270 deg in steps of 0.33 deg, 15 Hz, 0.05 to 25 m, systematic error +-60 mm, statistical error 20 mm.
+    laser.beams = 811;
+    laser.rate_hz = 15.0;
+    laser.range_max_m = 25.0;
+    laser.range_step_m = 0.001;
+    laser.noise = {.enabled = true, .sigma_m = 0.02, .bias_max_m = 0.06};
+    return laser;
+  }
+  if (preset == "hokuyo_utm30lx") {
+    // Data sheet: 270 deg in steps of 0.25 deg, 25 ms a scan, 0.1 to 30 m, accuracy +-30 mm and repeated accuracy 10 mm up to 10 m.
+    laser.beams = 1081;
+    laser.rate_hz = 40.0;
+    laser.range_min_m = 0.1;
+    laser.range_step_m = 0.001;
+    laser.noise = {.enabled = true, .sigma_m = 0.01, .bias_max_m = 0.02};
+    return laser;
+  }
   if (preset == "ideal") {
     laser.noise.enabled = false;
+    laser.spot.mixed = laser.spot.dropouts = false;
     laser.range_step_m = 0.0;
     return laser;
   }
-  throw Error("laser preset '" + preset + "' is not known; expected sick_s300 or ideal");
+  throw Error("laser preset '" + preset + "' is not known; expected sick_s300, sick_tim571, hokuyo_utm30lx or ideal");
 }
 
 double LaserConfig::angle_min() const { return -0.5 * to_radians(field_deg); }
@@ -32,7 +80,7 @@ Stamp LaserConfig::beam_interval() const { return from_seconds(angle_increment()
 
 void LaserConfig::visit(Fields& f) {
   const std::string before = preset;
-  f("preset", preset, "the product whose values the other keys start from", {.choices = {"sick_s300", "ideal"}});
+  f("preset", preset, "the product whose values the other keys start from", {.choices = presets()});
   if (preset != before) {
     const Mount kept = mount;
     *this = make(preset);
@@ -45,6 +93,7 @@ void LaserConfig::visit(Fields& f) {
   f("range_max_m", range_max_m, "nothing is measured beyond this", {.min = 0.001, .max = 1000});
   if (range_max_m <= range_min_m) f.reject("range_max_m", "must be greater than range_min_m");
   f("range_step_m", range_step_m, "resolution of the output; 0 = none", {.min = 0, .max = 1});
+  f.group("spot", spot, "light of a beam");
   f.group("noise", noise, "error of a range");
   f.group("mount", mount, "place on the vehicle");
 }

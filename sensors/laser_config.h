@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/fields.h"
 #include "core/stamp.h"
@@ -18,6 +19,21 @@ struct LaserNoise {
   void visit(Fields& f);
 };
 
+// The light of a beam. Signals are relative: 1 comes from a white diffuse surface seen straight on from 1 m.
+struct LaserSpot {
+  bool mixed = true;     // false: a beam without width
+  bool dropouts = true;  // false: every surface is bright enough
+  // SICK's sibling scanners: 8 mm + 15 mrad * distance.
+  double diameter_m = 0.008;
+  double divergence_rad = 0.015;
+  double merge_m = 0.3;       // echoes nearer to each other than this become one
+  double min_signal = 0.001;  // about what 1.8 % reflectivity gives at 4 m, or a white wall at 8 m under 86 deg
+  // Where the scanner would see its own vehicle: from, to, from, to ... in degrees of the scanner's frame (0 = forward, counter-clockwise).
+  std::vector<double> masked_deg;
+  bool masks(double angle) const;  // radians
+  void visit(Fields& f);
+};
+
 // The defaults are those of preset sick_s300 (S300 Expert), mounted as in the paper's section 4.3: 0.3 m high at a front corner; offsets
 // and yaw come from the authors' own configuration.
 struct LaserConfig {
@@ -27,10 +43,12 @@ struct LaserConfig {
   double rate_hz = 25.0;     // mirror turns a second; a beam is measured when the mirror points at it
   double range_min_m = 0.05, range_max_m = 30.0;
   double range_step_m = 0.01;  // resolution of the output; 0 = none
+  LaserSpot spot;
   LaserNoise noise;
   Mount mount = {.x_m = 0.275, .y_m = 0.2, .z_m = 0.3, .yaw_deg = 43.9};
 
-  // Presets: sick_s300 (S300 Expert), ideal (same geometry without error). Throws Error naming the known ones.
+  // Presets: sick_s300 (S300 Expert), sick_tim571 (TiM571), hokuyo_utm30lx (UTM-30LX), each from its data sheet; ideal (the S300's geometry
+  // without error). Throws Error naming the known ones.
   static LaserConfig make(const std::string& preset);
   double angle_min() const;        // radians
   double angle_increment() const;  // radians

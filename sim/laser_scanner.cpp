@@ -5,8 +5,7 @@
 
 namespace waretwin {
 
-LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, const std::string& sensor, Stamp stamp,
-                     const std::function<Pose(Stamp)>& X_WB) {
+LaserScan empty_scan(const LaserConfig& config, const std::string& sensor, Stamp stamp) {
   LaserScan scan;
   scan.stamp = stamp;
   scan.sensor = sensor;
@@ -15,6 +14,13 @@ LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, con
   scan.beam_interval = config.beam_interval();
   scan.range_min = config.range_min_m;
   scan.range_max = config.range_max_m;
+  scan.ranges.assign(static_cast<std::size_t>(config.beams), 0.0f);
+  return scan;
+}
+
+LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, const std::string& sensor, Stamp stamp,
+                     const std::function<Pose(Stamp)>& X_WB) {
+  LaserScan scan = empty_scan(config, sensor, stamp);
   const Pose X_BL = config.mount.X_BL();
   const auto beams = static_cast<std::size_t>(config.beams);
   std::vector<Ray> rays(beams);
@@ -28,7 +34,6 @@ LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, con
   }
   std::vector<Hit> hits(beams);
   ray_caster.cast(rays, hits, Coherence::kCoherent);
-  scan.ranges.resize(beams, 0.0f);
   for (std::size_t i = 0; i < beams; ++i) {
     if (hits[i].valid() && hits[i].distance >= static_cast<float>(config.range_min_m)) scan.ranges[i] = hits[i].distance;
   }

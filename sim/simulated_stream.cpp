@@ -12,7 +12,7 @@
 #include "sensors/laser_noise.h"
 #include "sensors/odometry_model.h"
 #include "sim/depth_camera.h"
-#include "sim/laser_scanner.h"
+#include "sim/laser_spot.h"
 #include "sim/ray_caster.h"
 #include "sim/renderer.h"
 #include "sim/robot.h"
@@ -140,7 +140,8 @@ void SimulatedStream::State::describe() {
 }
 
 LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) const {
-  LaserScan scan = ideal_scan(*ray_caster, scenario.sensors.lasers.at(name), name, stamp, [this](Stamp at) { return motion.X_WB(at); });
+  LaserScan scan = spot_scan(*ray_caster, renderer.surfaces(), scenario.sensors.lasers.at(name), name, stamp,
+                             [this](Stamp at) { return motion.X_WB(at); });
   laser_noise.at(name).apply(scan);
   return scan;
 }

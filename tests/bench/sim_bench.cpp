@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "sensors/camera_config.h"
+#include "sim/depth_camera.h"
 #include "sim/laser_scanner.h"
+#include "sim/laser_spot.h"
 #include "sim/renderer.h"
 #include "tests/sim/fixtures.h"
 
@@ -51,10 +53,31 @@ void laser_scan(benchmark::State& state) {
   }
 }
 
+// With the width of the beams: seven rays and their surfaces each.
+void laser_scan_with_spot(benchmark::State& state) {
+  const LaserConfig laser;
+  const Surfaces surfaces(hall());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        spot_scan(*hall(), surfaces, laser, "laser", 0, [](Stamp) { return make_upright_pose(0, 0, 0, 0); }).ranges.data());
+  }
+}
+
+// The depth camera's own picture and its warp into the colour view, beside depth_only (ideal depth, of the colour view alone).
+void time_of_flight_depth(benchmark::State& state) {
+  const Surfaces surfaces(hall());
+  const auto camera = DepthCamera::make(CameraConfig{}, 1, "camera", hall(), surfaces);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(camera->read({}, 0, [](Stamp) { return camera_pose(); }).registered.data);
+  }
+}
+
 BENCHMARK(depth_only)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_unshadowed)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_with_shadows)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_with_shadows_and_occlusion)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(time_of_flight_depth)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(laser_scan_with_spot)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(laser_scan)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 }  // namespace
