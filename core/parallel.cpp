@@ -28,8 +28,8 @@ std::unique_ptr<tbb::global_control>& limit() {
 }
 
 #ifdef __SANITIZE_THREAD__
-// TBB's library is not built for ThreadSanitizer, which then takes its hand-overs between threads for races. Under it, plain threads run the
-// pieces, so that what it reports are races of our own loops.
+// TBB's library is not built for ThreadSanitizer, which then takes its hand-overs between threads for races. Under it, plain threads run
+// the pieces, so that what it reports are races of our own loops.
 void run_pieces(std::size_t pieces, const std::function<void(std::size_t)>& run) {
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;

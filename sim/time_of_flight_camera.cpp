@@ -30,7 +30,7 @@ constexpr std::array<Ninth, kTimeOfFlightPulses> kNinths = {{{-1, -1}, {1, 1}, {
 constexpr float kBend = 0.004f;
 
 // Multipath: cells of the grid, rays of each cell, how far they look. Light from farther away is spread thin and out of step.
-constexpr int kCell = 4, kBounces = 6;
+constexpr int kCell = 4, kMiddleOfCell = kCell / 2, kBounces = 6;
 constexpr float kBounceReach = 1.5f;
 constexpr float kMostIndirect = 4.0f;  // times the direct light
 
@@ -311,7 +311,7 @@ void TimeOfFlightCamera::State::find_indirect(const Pose& X_WD) {
       bounces.clear();
       of_cell.clear();
       for (int cx = 0; cx < cell_columns; ++cx) {
-        const int x = std::min(cx * kCell + kCell / 2, rays.cols - 1), y = std::min(cy * kCell + kCell / 2, rays.rows - 1);
+        const int x = std::min(cx * kCell + kMiddleOfCell, rays.cols - 1), y = std::min(cy * kCell + kMiddleOfCell, rays.rows - 1);
         const Look& look = looks[index(x, y)];
         if (look.range == 0.0f || !(look.answer.backscatter > 0.0f)) continue;
         Cell& cell = cells[static_cast<std::size_t>(cy) * static_cast<std::size_t>(cell_columns) + static_cast<std::size_t>(cx)];
@@ -383,7 +383,8 @@ void TimeOfFlightCamera::State::smooth_indirect() {
         };
         Cell& out = smooth_cells[at(x, y)];
         if (!out.valid) continue;
-        const Look& look = looks[index(std::min(x * kCell + kCell / 2, rays.cols - 1), std::min(y * kCell + kCell / 2, rays.rows - 1))];
+        const Look& look =
+            looks[index(std::min(x * kCell + kMiddleOfCell, rays.cols - 1), std::min(y * kCell + kMiddleOfCell, rays.rows - 1))];
         std::complex<float> phasor = 0.0f;
         float length = 0.0f, count = 0.0f;
         for (int cy = std::max(y - 1, 0); cy <= std::min(y + 1, rows - 1); ++cy) {
@@ -409,13 +410,13 @@ void TimeOfFlightCamera::State::add_indirect(TimeOfFlightSignal& signal) const {
       auto* range = signal.range.ptr<float>(y);
       auto* strength = signal.signal.ptr<float>(y);
       auto* indirect = signal.indirect.ptr<float>(y);
-      const float fy = static_cast<float>(y - kCell / 2) / kCell;
+      const float fy = static_cast<float>(y - kMiddleOfCell) / kCell;
       const int y0 = std::clamp(static_cast<int>(std::floor(fy)), 0, rows - 1), y1 = std::min(y0 + 1, rows - 1);
       const float wy = std::clamp(fy - static_cast<float>(y0), 0.0f, 1.0f);
       for (int x = 0; x < rays.cols; ++x) {
         const Look& look = looks[index(x, y)];
         if (look.range == 0.0f || range[x] == 0.0f) continue;
-        const float fx = static_cast<float>(x - kCell / 2) / kCell;
+        const float fx = static_cast<float>(x - kMiddleOfCell) / kCell;
         const int x0 = std::clamp(static_cast<int>(std::floor(fx)), 0, columns - 1), x1 = std::min(x0 + 1, columns - 1);
         const float wx = std::clamp(fx - static_cast<float>(x0), 0.0f, 1.0f);
         const Eigen::Vector3f position = look.range * look.direction;
