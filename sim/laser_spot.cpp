@@ -65,7 +65,6 @@ LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const
   }
   std::vector<Hit> hits(rays.size());
   ray_caster.cast(rays, hits, Coherence::kCoherent);
-  const Scene& scene = ray_caster.scene();
   std::array<Echo, kLooks> echoes;
   for (std::size_t i = 0; i < beams; ++i) {
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
@@ -76,8 +75,7 @@ LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const
       if (!hit.valid()) continue;
       const Ray& ray = rays[i * kLooks + k];
       const SurfacePoint point = surfaces.at(ray, hit, static_cast<float>(spot.divergence_rad));
-      const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
-      const InfraredAnswer answer = infrared_answer(scene.materials[static_cast<std::size_t>(mesh.material)], point, -ray.direction);
+      const InfraredAnswer answer = infrared_answer(surfaces.material(hit), point, -ray.direction);
       echoes[k] = {hit.distance, answer.backscatter / (hit.distance * hit.distance)};
     }
     const float range = range_of(echoes, spot);

@@ -64,6 +64,12 @@ Surfaces::Corners Surfaces::corners(const Mesh& mesh, const Hit& hit) const {
   return {{i[0], i[1], i[2]}, {1.0f - hit.u - hit.v, hit.u, hit.v}};
 }
 
+const Material& Surfaces::material(const Hit& hit) const {
+  const Scene& scene = ray_caster_->scene();
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  return scene.materials[static_cast<std::size_t>(mesh.material)];
+}
+
 Eigen::Vector2f Surfaces::uv(const Hit& hit, int set) const {
   const Scene& scene = ray_caster_->scene();
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];

@@ -25,6 +25,7 @@ class Surfaces {
 
   // `spread` is the angle in radians that one sample covers; it picks the texture size. The hit must be valid.
   SurfacePoint at(const Ray& ray, const Hit& hit, float spread) const;
+  const Material& material(const Hit& hit) const;
   // Interpolated texture coordinates of set 0 or 1, before any texture transform; zero where the mesh has none.
   Eigen::Vector2f uv(const Hit& hit, int set) const;
   // Normal of the hit triangle's plane in the world, unit, towards where the ray came from.

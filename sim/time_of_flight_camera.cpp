@@ -93,11 +93,6 @@ struct TimeOfFlightCamera::State {
   std::vector<Cell> cells, smooth_cells;
   cv::Mat bends;
 
-  const Material& material_of(const Hit& hit) const {
-    const Scene& scene = ray_caster->scene();
-    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
-    return scene.materials[static_cast<std::size_t>(mesh.material)];
-  }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(rays.cols) + static_cast<std::size_t>(x);
   }
@@ -119,7 +114,7 @@ Look TimeOfFlightCamera::State::seen(const Ray& ray, const Hit& hit) const {
   const SurfacePoint point = surfaces.at(ray, hit, spread);
   look.range = hit.distance;
   look.normal = point.face_normal;
-  look.answer = infrared_answer(material_of(hit), point, -ray.direction);
+  look.answer = infrared_answer(surfaces.material(hit), point, -ray.direction);
   look.instance = hit.instance;
   look.primitive = hit.primitive;
   return look;
@@ -341,8 +336,7 @@ void TimeOfFlightCamera::State::find_indirect(const Pose& X_WD) {
         if (!(cosine > 0.0f)) continue;
         const Eigen::Vector3f seen_D = R_DW * -to_camera;
         if (!(seen_D.z() > 0.0f) || !inside_outline(camera.field, seen_D.x() / seen_D.z(), seen_D.y() / seen_D.z())) continue;
-        const Material& material = material_of(hits[i]);
-        const InfraredAnswer answer = infrared_answer(material, other, to_camera / other_range);
+        const InfraredAnswer answer = infrared_answer(surfaces.material(hits[i]), other, to_camera / other_range);
         const float ratio = look->answer.albedo / look->answer.backscatter * answer.albedo * cosine * look->range * look->range /
                             (other_range * other_range * static_cast<float>(kBounces));
         const float longer = 0.5f * (other_range + hits[i].distance - look->range);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scenes/scene.h"
+#include "sim/ray_caster.h"
 
 namespace waretwin::fixtures {
 
@@ -175,6 +176,10 @@ inline Scene busy_hall(int detail) {
   scene.ambient = {0.35f, 0.36f, 0.38f};
   scene.background = {0.1f, 0.1f, 0.12f};
   return scene;
+}
+
+inline std::shared_ptr<const RayCaster> caster_of(Scene scene) {
+  return std::make_shared<const RayCaster>(std::make_shared<const Scene>(std::move(scene)));
 }
 
 }  // namespace waretwin::fixtures

@@ -18,11 +18,8 @@ using fixtures::add_instance;
 using fixtures::add_material;
 using fixtures::add_mesh;
 using fixtures::add_object;
+using fixtures::caster_of;
 using fixtures::placed;
-
-std::shared_ptr<const RayCaster> caster_of(Scene scene) {
-  return std::make_shared<const RayCaster>(std::make_shared<const Scene>(std::move(scene)));
-}
 
 Intrinsics small_camera() { return Intrinsics::from_field_of_view(203, 151, to_radians(80), to_radians(60)); }
 

@@ -17,8 +17,7 @@ using fixtures::placed;
 struct Hall {
   std::shared_ptr<const RayCaster> caster;
   Surfaces surfaces;
-  explicit Hall(Scene scene)
-      : caster(std::make_shared<const RayCaster>(std::make_shared<const Scene>(std::move(scene)))), surfaces(caster) {}
+  explicit Hall(Scene scene) : caster(fixtures::caster_of(std::move(scene))), surfaces(caster) {}
   LaserScan scan(const LaserConfig& config) const { return spot_scan(*caster, surfaces, config, "laser", 0, at_origin); }
   static Pose at_origin(Stamp) { return make_upright_pose(0, 0, 0, 0); }
 };

@@ -18,11 +18,8 @@ namespace {
 using fixtures::add_instance;
 using fixtures::add_material;
 using fixtures::add_mesh;
+using fixtures::caster_of;
 using fixtures::placed;
-
-std::shared_ptr<const RayCaster> caster_of(Scene scene) {
-  return std::make_shared<const RayCaster>(std::make_shared<const Scene>(std::move(scene)));
-}
 
 Pose looking(const Eigen::Vector3d& p_W, double yaw = 0.0, double pitch = 0.0) {
   Pose X_WD = Pose::Identity();
