@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "core/error.h"
@@ -147,6 +149,30 @@ RTCRay single(const Ray& ray) {
 
 constexpr int kLanes = 8;
 
+void cast_packets(RTCScene scene, std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) {
+  WARETWIN_CHECK(rays.size() == hits.size(), "as many hits as rays");
+  RTCIntersectContext context = make_context(coherence);
+  alignas(32) int valid[kLanes];
+  RTCRayHit8 packet;
+  for (std::size_t begin = 0; begin < rays.size(); begin += kLanes) {
+    const int count = static_cast<int>(std::min<std::size_t>(kLanes, rays.size() - begin));
+    for (int i = 0; i < kLanes; ++i) {
+      valid[i] = i < count ? -1 : 0;
+      set_lane(packet.ray, i, rays[begin + static_cast<std::size_t>(i < count ? i : 0)]);
+      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid, scene, &context, &packet);
+    for (int i = 0; i < count; ++i) {
+      Hit& hit = hits[begin + static_cast<std::size_t>(i)];
+      hit = {};
+      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      hit = {packet.ray.tfar[i], static_cast<int>(packet.hit.instID[0][i]), static_cast<int>(packet.hit.primID[i]), packet.hit.u[i],
+             packet.hit.v[i]};
+    }
+  }
+}
+
 }  // namespace
 
 void RayCasterOptions::visit(Fields& f) {
@@ -168,9 +194,13 @@ struct RayCaster::State {
   std::vector<Motion> motions;  // as many as instances
   bool changed = true;          // since the last commit
   Stamp shutter_begin = 0, shutter_end = 0;
+  // Trees of single objects, made when asked for; their geometries are those of `top`, under the same numbers.
+  std::mutex object_mutex;
+  std::map<int, DeviceScene> object_scenes;
 
   void add_mesh(std::size_t index);
   void add_instance(std::size_t index);
+  RTCScene object_scene(int object);
 };
 
 void RayCaster::State::add_mesh(std::size_t index) {
@@ -231,6 +261,23 @@ void RayCaster::State::add_instance(std::size_t index) {
   instances.back() = geometry;
 }
 
+RTCScene RayCaster::State::object_scene(int object) {
+  WARETWIN_CHECK(object >= 0 && static_cast<std::size_t>(object) < scene->objects.size(), "an object of the scene");
+  const std::lock_guard lock(object_mutex);
+  DeviceScene& made = object_scenes[object];
+  if (made) return made.get();
+  DeviceScene alone(rtcNewScene(device.get()));
+  rtcSetSceneFlags(alone.get(), RTC_SCENE_FLAG_ROBUST);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (scene->instances[i].object != object || instances[i] == nullptr) continue;
+    rtcAttachGeometryByID(alone.get(), instances[i], static_cast<unsigned>(i));
+  }
+  commit_alone(alone.get());
+  require_no_error(device.get());
+  made = std::move(alone);
+  return made.get();
+}
+
 Placement::Placement(const Eigen::Affine3f& X) : X_WM(X), mean_scale(std::cbrt(std::abs(X.linear().determinant()))) {
   const Eigen::Matrix3f linear = X.linear();
   cofactors.col(0) = linear.col(1).cross(linear.col(2));
@@ -269,27 +316,11 @@ Hit RayCaster::cast(const Ray& ray) const {
 }
 
 void RayCaster::cast(std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const {
-  WARETWIN_CHECK(rays.size() == hits.size(), "as many hits as rays");
-  RTCIntersectContext context = make_context(coherence);
-  alignas(32) int valid[kLanes];
-  RTCRayHit8 packet;
-  for (std::size_t begin = 0; begin < rays.size(); begin += kLanes) {
-    const int count = static_cast<int>(std::min<std::size_t>(kLanes, rays.size() - begin));
-    for (int i = 0; i < kLanes; ++i) {
-      valid[i] = i < count ? -1 : 0;
-      set_lane(packet.ray, i, rays[begin + static_cast<std::size_t>(i < count ? i : 0)]);
-      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    rtcIntersect8(valid, state_->top.get(), &context, &packet);
-    for (int i = 0; i < count; ++i) {
-      Hit& hit = hits[begin + static_cast<std::size_t>(i)];
-      hit = {};
-      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-      hit = {packet.ray.tfar[i], static_cast<int>(packet.hit.instID[0][i]), static_cast<int>(packet.hit.primID[i]), packet.hit.u[i],
-             packet.hit.v[i]};
-    }
-  }
+  cast_packets(state_->top.get(), rays, hits, coherence);
+}
+
+void RayCaster::cast_object(int object, std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence) const {
+  cast_packets(state_->object_scene(object), rays, hits, coherence);
 }
 
 bool RayCaster::occluded(const Ray& ray) const {
@@ -373,10 +404,26 @@ void RayCaster::commit() {
   if (!state_->changed) return;
   state_->changed = false;
   commit_alone(state_->top.get());
+  for (const auto& [object, alone] : state_->object_scenes) commit_alone(alone.get());
   require_no_error(state_->device.get());
 }
 
 const Placement& RayCaster::placement(int instance) const { return state_->placements[static_cast<std::size_t>(instance)]; }
+
+Eigen::AlignedBox3f RayCaster::bounds(int instance) const {
+  const auto index = static_cast<std::size_t>(instance);
+  WARETWIN_CHECK(index < state_->present.size(), "an instance of the scene");
+  Eigen::AlignedBox3f box;
+  const RTCScene mesh_scene = state_->mesh_scenes[static_cast<std::size_t>(state_->scene->instances[index].mesh)].get();
+  if (!state_->present[index] || mesh_scene == nullptr) return box;
+  RTCBounds b;
+  rtcGetSceneBounds(mesh_scene, &b);
+  const Eigen::AlignedBox3f box_M(Eigen::Vector3f(b.lower_x, b.lower_y, b.lower_z), Eigen::Vector3f(b.upper_x, b.upper_y, b.upper_z));
+  for (const Eigen::Affine3f& X_WM : {state_->motions[index].begin, state_->motions[index].end}) {
+    for (int corner = 0; corner < 8; ++corner) box.extend(X_WM * box_M.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
+  }
+  return box;
+}
 
 Eigen::AlignedBox3f RayCaster::bounds() const {
   RTCBounds b;

@@ -76,6 +76,9 @@ class RayCaster {
   bool occluded(const Ray& ray) const;
   // blocked[i] becomes 1 or 0. A ray whose far is below its near is not traced and counts as free.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Coherence coherence = Coherence::kIncoherent) const;
+  // The same as cast in a hall where nothing stands but the instances of one object (an index into Scene::objects). An object's tree is
+  // made when it is first asked for.
+  void cast_object(int object, std::span<const Ray> rays, std::span<Hit> hits, Coherence coherence = Coherence::kIncoherent) const;
 
   // What follows changes the hall; it takes effect with commit(), which costs nothing where nothing has changed. None of it may run while
   // rays are cast.
@@ -95,6 +98,8 @@ class RayCaster {
   // Where an instance stands in the middle of the shutter; normals and textures are looked up there.
   const Eigen::Affine3f& transform(int instance) const { return placement(instance).X_WM; }
   const Placement& placement(int instance) const;
+  // Bounds of a present instance over the whole shutter; empty for one that is not there or has no triangles.
+  Eigen::AlignedBox3f bounds(int instance) const;
   // Bounds of all present instances, over the whole shutter.
   Eigen::AlignedBox3f bounds() const;
 

@@ -85,6 +85,7 @@ struct SimulatedStream::State {
   StreamInfo info;
   std::vector<Source> sources;
   FrameTruth truth;
+  HallMoment truth_moment;  // of `truth`, once its images are there
   int frames_sent = 0, frames_rendered = 0;
   double last_frame_ms = 0.0;
 
@@ -172,6 +173,7 @@ void SimulatedStream::State::render(RgbdFrame& frame, const HallMoment& moment) 
   if (truth.stamp == frame.stamp && truth.sensor == frame.sensor) {
     truth.instances = images.instances;
     truth.ideal_depth = images.depth;
+    truth_moment = moment;
   }
   ++frames_rendered;
   last_frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -220,6 +222,15 @@ std::optional<SensorEvent> SimulatedStream::next() {
 Pose SimulatedStream::true_X_WB(Stamp stamp) const { return state_->motion.X_WB(stamp); }
 MotionReport SimulatedStream::motion() const { return state_->motion.report(); }
 const FrameTruth& SimulatedStream::last_frame_truth() const { return state_->truth; }
+std::vector<ObjectView> SimulatedStream::object_views() {
+  State& s = *state_;
+  if (s.truth.instances.empty()) return {};
+  s.truth_moment.show(*s.ray_caster);
+  const Intrinsics& intrinsics = s.info.cameras.at(s.truth.sensor).intrinsics;
+  return waretwin::object_views(*s.ray_caster, pinhole_rays(intrinsics, s.truth.X_WC, s.ray_caster->time_of(s.truth.stamp)),
+                                s.truth.instances);
+}
+
 const Scene& SimulatedStream::scene() const { return state_->ray_caster->scene(); }
 std::shared_ptr<const RayCaster> SimulatedStream::ray_caster() const { return state_->ray_caster; }
 int SimulatedStream::frames_rendered() const { return state_->frames_rendered; }

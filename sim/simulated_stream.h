@@ -4,6 +4,7 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <vector>
 
 #include "core/fields.h"
 #include "core/pose.h"
@@ -11,6 +12,7 @@
 #include "scenes/scene.h"
 #include "sensors/sensor_stream.h"
 #include "sim/motion/hall_motion.h"
+#include "sim/object_views.h"
 #include "sim/render_options.h"
 
 namespace waretwin {
@@ -58,6 +60,8 @@ class SimulatedStream final : public SensorStream {
   MotionReport motion() const;
   // Poses of the newest frame and, once it is loaded, its images; a frame that was not loaded has empty images.
   const FrameTruth& last_frame_truth() const;
+  // What the newest frame shows of each object, and what it hides; made anew with every call. Nothing for a frame that was not loaded.
+  std::vector<ObjectView> object_views();
   const Scene& scene() const;
   std::shared_ptr<const RayCaster> ray_caster() const;
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 
 #include "core/digest.h"
+#include "core/error.h"
+#include "harness/truth/sensor_poses.h"
 #include "harness/truth/truth_associator.h"
+#include "harness/truth/truth_frames.h"
 #include "harness/truth/truth_localiser.h"
 #include "mapper/integrate/tsdf_volume.h"
 #include "sensors/depth_field.h"
@@ -63,6 +66,9 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   std::map<std::string, cv::Mat> fields;
   for (const auto& [name, camera] : cameras) fields[name] = depth_field_mask(camera);
   DepthQualityMeter depth_quality;
+  SensorPoses sensor_poses(stream, config.scenario.sensors);
+  std::vector<ObjectView> views;  // of the frame that was mapped last
+  ClosedLoopResult result;
   MappingHooks hooks;
   hooks.progress = progress;
   hooks.on_frame = [&](const Mapper::FrameResult& frame) {
@@ -71,11 +77,18 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     const CameraConfig& camera = cameras.at(frame.frame.sensor);
     depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
                       camera.depth_max_m);
+    if (!config.truth_frames.enabled) return;
+    WARETWIN_CHECK(truth.stamp == frame.frame.stamp && truth.sensor == frame.frame.sensor, "the mapped frame is the stream's newest");
+    views = stream.object_views();
+    result.truth_frames += truth_frame_line(truth, views, *scene, config.truth_frames.masks);
   };
+  hooks.on_event = [&](const SensorEvent& event) { sensor_poses.add(event); };
   hooks.true_depth = [&](const RgbdFrame&) { return stream.last_frame_truth().ideal_depth; };
+  if (config.truth_frames.enabled) {
+    hooks.truth_picture = [&](const RgbdFrame& frame) { return draw_truth(frame.colour, stream.last_frame_truth(), views, *scene); };
+  }
   Stages stages = stages_with_truth(config, stream);
   if (ready) ready();
-  ClosedLoopResult result;
   result.mapping = map_stream(stream, config.mapper, std::move(stages), config.simulation.max_frames, hooks);
 
   const ObjectMap& map = result.mapping.map;
@@ -89,6 +102,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     result.truth.push_back(truth);
   }
   result.trajectory = stamped(map.trajectory);
+  result.sensor_poses = sensor_poses.poses();
   for (const StampedPose& point : result.trajectory) result.true_trajectory.push_back({point.stamp, stream.true_X_WB(point.stamp)});
 
   RunScore& score = result.score;

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "harness/pictures/map_pictures.h"
 #include "harness/run/mapping.h"
@@ -15,6 +18,8 @@ struct ClosedLoopResult {
   MappingResult mapping;
   std::vector<ListedObject> mapped, truth;               // truth with the visible fractions
   std::vector<StampedPose> trajectory, true_trajectory;  // at the same stamps
+  std::string truth_frames;                              // a line a mapped frame (truth_frame_line); empty where that is switched off
+  std::map<std::string, std::vector<StampedPose>> sensor_poses;  // as SensorPoses::poses
   RunScore score;
 };
 

@@ -58,6 +58,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
   mapper.on_frame = [&](const Mapper::FrameResult& frame) {
     source_times.push_back(source_ms);
     const int index = static_cast<int>(source_times.size()) - 1;
+    if (hooks.on_frame) hooks.on_frame(frame);
     if (album.wants(index)) {
       const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
       const double far_m = std::min(camera.depth_max_m, 10.0);
@@ -66,9 +67,9 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
       if (hooks.true_depth) {
         pictures.push_back({".depth_error", draw_depth_error(frame.frame.depth, hooks.true_depth(frame.frame), camera.depth_min_m, far_m)});
       }
+      if (hooks.truth_picture) pictures.push_back({".truth", hooks.truth_picture(frame.frame)});
       album.add(index, std::move(pictures));
     }
-    if (hooks.on_frame) hooks.on_frame(frame);
   };
 
   const auto start = std::chrono::steady_clock::now();
@@ -91,6 +92,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
         };
       }
     }
+    if (hooks.on_event) hooks.on_event(*event);
     mapper.consume(std::move(*event));
     if (hooks.progress) {
       double done = 0.0;

@@ -33,9 +33,14 @@ struct MappingResult {
 struct MappingHooks {
   // After each event: share of the drive that is done in [0, 1] (0 where its length is unknown), and the map so far.
   std::function<void(double, const ObjectMap&)> progress;
+  // Each event before the mapper gets it; pictures are not loaded yet.
+  std::function<void(const SensorEvent&)> on_event;
+  // After a frame is mapped, before the pictures below are asked for.
   std::function<void(const Mapper::FrameResult&)> on_frame;
   // True depth of the frame that was mapped last, as FrameTruth::ideal_depth; makes pictures of the depth's error. May be empty.
   std::function<cv::Mat(const RgbdFrame&)> true_depth;
+  // Picture of the truth about the frame that was mapped last (BGR). May be empty.
+  std::function<cv::Mat(const RgbdFrame&)> truth_picture;
 };
 
 // Maps the stream to its end, or up to `max_frames` camera frames (0 = all).

@@ -24,6 +24,7 @@ void RunConfig::visit(Fields& f) {
   f.group("simulation", simulation, "how the sensors are simulated");
   f.group("truth_stages", truth_stages, "stages that the truth stands in for");
   f.group("truth_detector", truth_detector, "which objects get a true box");
+  f.group("truth_frames", truth_frames, "the truth of mapped frames");
   f.group("score", score, "how map and truth are compared");
 }
 

@@ -8,6 +8,7 @@
 #include "core/config.h"
 #include "harness/score/object_score.h"
 #include "harness/truth/truth_detector.h"
+#include "harness/truth/truth_frames.h"
 #include "mapper/mapper_config.h"
 #include "scenes/scenario.h"
 #include "sim/simulated_stream.h"
@@ -28,6 +29,7 @@ struct RunConfig {
   SimulationConfig simulation;
   TruthStages truth_stages;
   TruthDetectorConfig truth_detector;
+  TruthFramesConfig truth_frames;
   ScoringRules score;
 
   void visit(Fields& f);

@@ -67,11 +67,13 @@ const std::vector<std::string> kMapFiles = {"cuboids.json",  "map.glb",        "
 
 RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
   make_folder(path);
-  for (const char* name : {"score.json", "report.html"}) {
-    std::error_code error;
-    std::filesystem::remove(path_ / name, error);
-    if (error) throw Error(path_ / name, "cannot be replaced: " + error.message());
-  }
+  for (const char* name : {"score.json", "report.html"}) remove(name);
+}
+
+void RunFolder::remove(const std::string& name) {
+  std::error_code error;
+  std::filesystem::remove(path_ / name, error);
+  if (error) throw Error(path_ / name, "cannot be replaced: " + error.message());
 }
 
 std::filesystem::path RunFolder::file(const std::string& name) {
@@ -88,7 +90,8 @@ void RunFolder::clear(const std::string& name) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(path_ / name, error)) {
     const std::string extension = entry.path().extension().string();
-    if (entry.is_regular_file() && (extension == ".png" || extension == ".ply")) std::filesystem::remove(entry.path(), error);
+    if (entry.is_regular_file() && (extension == ".png" || extension == ".ply" || extension == ".tum"))
+      std::filesystem::remove(entry.path(), error);
   }
 }
 
@@ -140,13 +143,19 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   folder.clear("frames");
   for (const FramePicture& picture : mapping.pictures) folder.write_png("frames/" + picture.name + ".png", picture.image);
   // The report shows two frames: one early, one late.
-  for (const std::size_t third : {std::size_t{1}, std::size_t{2}}) {
-    const std::size_t pair = mapping.pictures.size() / 2 * third / 3;
-    for (std::size_t i = 2 * pair; i < std::min(2 * pair + 2, mapping.pictures.size()); ++i) {
-      pictures.push_back(
-          {mapping.pictures[i].name + (i % 2 == 0 ? ": detections, segmented pixels, mapped cuboids" : ": depth as measured"),
-           mapping.pictures[i].image});
+  const auto shown = [&](const std::string& kind, const std::string& caption, std::size_t third) {
+    std::vector<const FramePicture*> all;
+    for (const FramePicture& picture : mapping.pictures) {
+      if (picture.name.ends_with(kind)) all.push_back(&picture);
     }
+    if (all.empty()) return;
+    const FramePicture& picture = *all[all.size() * third / 3];
+    pictures.push_back({picture.name + ": " + caption, picture.image});
+  };
+  for (const std::size_t third : {std::size_t{1}, std::size_t{2}}) {
+    shown(".colour", "detections, segmented pixels, mapped cuboids", third);
+    shown(".depth", "depth as measured", third);
+    shown(".truth", "true objects, their visible (solid) and whole (dashed) boxes", third);
   }
   return pictures;
 }
@@ -162,6 +171,10 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   page.pictures = write_map(folder, result.mapping, std::move(scene));
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
+  folder.remove("truth_frames.jsonl");
+  if (!result.truth_frames.empty()) folder.write("truth_frames.jsonl", result.truth_frames);
+  for (const char* part : {"truth_poses", "truth_poses/cameras", "truth_poses/lasers"}) folder.clear(part);
+  for (const auto& [name, poses] : result.sensor_poses) folder.write("truth_poses/" + name, tum_text(poses));
   folder.write("table6.md", table6(score.objects, score.scenario + ", profile " + score.profile));
 
   page.title = "waretwin: " + score.scenario;
@@ -185,6 +198,8 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
     page.facts.push_back("Not segmented: " + reason + ", " + std::to_string(count) + " times");
   page.files = kMapFiles;
   for (const char* name : {"truth.json", "trajectory_truth.tum", "table6.md", "score.json"}) page.files.emplace_back(name);
+  if (!result.truth_frames.empty()) page.files.emplace_back("truth_frames.jsonl");
+  for (const auto& entry : result.sensor_poses) page.files.push_back("truth_poses/" + entry.first);
   folder.write("report.html", report_html(page));
   folder.write("score.json", score_json(score));
 }

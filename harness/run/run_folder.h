@@ -22,6 +22,8 @@ class RunFolder {
   std::filesystem::path file(const std::string& name);
   const std::filesystem::path& path() const { return path_; }
 
+  // Takes a file of an earlier run away, if there is one. Throws Error where that cannot be.
+  void remove(const std::string& name);
   // Empties a folder of files of an earlier run (objects, frames).
   void clear(const std::string& name);
 

@@ -1,25 +1,14 @@
 #include "harness/truth/truth_detector.h"
 
-#include <algorithm>
 #include <limits>
 #include <map>
 
 #include "core/error.h"
+#include "sim/pixel_extent.h"
 
 namespace waretwin {
 
 namespace {
-
-struct Extent {
-  int low_u = std::numeric_limits<int>::max(), low_v = std::numeric_limits<int>::max();
-  int high_u = -1, high_v = -1;
-  int pixels = 0, depth_pixels = 0;
-
-  cv::Rect2f box() const {
-    return {static_cast<float>(low_u), static_cast<float>(low_v), static_cast<float>(high_u - low_u + 1),
-            static_cast<float>(high_v - low_v + 1)};
-  }
-};
 
 // Area in pixels of the box around the whole cuboid as projected, also beyond the picture; infinite where a corner is behind the camera.
 double projected_area(const Cuboid& cuboid, const Intrinsics& intrinsics, const Pose& X_WC) {
@@ -44,27 +33,16 @@ void TruthDetectorConfig::visit(Fields& f) {
 std::vector<Detection> boxes_from_instances(const cv::Mat& instances, const cv::Mat& depth, const std::vector<TrueObject>& objects,
                                             const Intrinsics& intrinsics, const Pose& X_WC, const TruthDetectorConfig& config) {
   WARETWIN_CHECK(instances.type() == CV_16UC1 && depth.type() == CV_32FC1 && instances.size() == depth.size(), "images of one frame");
-  std::map<int, Extent> extents;
-  for (int v = 0; v < instances.rows; ++v) {
-    const auto* ids = instances.ptr<std::uint16_t>(v);
-    const auto* metres = depth.ptr<float>(v);
-    for (int u = 0; u < instances.cols; ++u) {
-      if (ids[u] == 0) continue;
-      Extent& extent = extents[ids[u]];
-      extent.low_u = std::min(extent.low_u, u);
-      extent.high_u = std::max(extent.high_u, u);
-      extent.low_v = std::min(extent.low_v, v);
-      extent.high_v = std::max(extent.high_v, v);
-      ++extent.pixels;
-      extent.depth_pixels += metres[u] > 0.0f ? 1 : 0;
-    }
-  }
+  const std::map<int, PixelExtent> extents = extents_of(instances);
+  cv::Mat seen = instances.clone();
+  seen.setTo(0, depth <= 0.0f);
+  std::map<int, PixelExtent> with_depth = extents_of(seen);
   std::vector<Detection> detections;
   for (const TrueObject& object : objects) {
     const auto found = extents.find(object.id);
     if (found == extents.end()) continue;
-    const Extent& extent = found->second;
-    if (extent.pixels < config.min_pixels || extent.depth_pixels < config.min_depth_pixels) continue;
+    const PixelExtent& extent = found->second;
+    if (extent.pixels < config.min_pixels || with_depth[object.id].pixels < config.min_depth_pixels) continue;
     const cv::Rect2f box = extent.box();
     if (static_cast<double>(box.area()) < config.min_visible_share * projected_area(object.cuboid, intrinsics, X_WC)) continue;
     detections.push_back({object.class_name, box, 1.0f});

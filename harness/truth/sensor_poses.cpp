@@ -1,0 +1,27 @@
+#include "harness/truth/sensor_poses.h"
+
+namespace waretwin {
+
+SensorPoses::SensorPoses(const SimulatedStream& stream, const SensorsConfig& sensors) : stream_(stream) {
+  for (const auto& [name, camera] : sensors.cameras) {
+    if (camera.depth_model == "time_of_flight") X_CD_[name] = camera.time_of_flight.X_CD(camera.field.tilt_down_deg);
+  }
+}
+
+void SensorPoses::add(const SensorEvent& event) {
+  const Stamp stamp = stamp_of(event);
+  const Pose X_WB = stream_.true_X_WB(stamp);
+  const StreamInfo& info = stream_.info();
+  if (const auto* frame = std::get_if<RgbdFrame>(&event)) {
+    const Pose X_WC = X_WB * info.cameras.at(frame->sensor).X_BC;
+    poses_["cameras/" + frame->sensor + ".tum"].push_back({stamp, X_WC});
+    const auto depth = X_CD_.find(frame->sensor);
+    if (depth != X_CD_.end()) poses_["cameras/" + frame->sensor + ".depth.tum"].push_back({stamp, X_WC * depth->second});
+  } else if (const auto* scan = std::get_if<LaserScan>(&event)) {
+    poses_["lasers/" + scan->sensor + ".tum"].push_back({stamp, X_WB * info.lasers.at(scan->sensor).X_BL});
+  } else {
+    poses_[std::get<OdometryReading>(event).sensor + ".tum"].push_back({stamp, X_WB});
+  }
+}
+
+}  // namespace waretwin

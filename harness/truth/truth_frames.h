@@ -1,0 +1,31 @@
+// The truth of mapped frames as text: what each shows of every true object (truth_frames.jsonl).
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "core/fields.h"
+#include "scenes/scene.h"
+#include "sim/object_views.h"
+#include "sim/simulated_stream.h"
+
+namespace waretwin {
+
+struct TruthFramesConfig {
+  bool enabled = true;
+  bool masks = true;  // with the amodal masks
+  void visit(Fields& f);
+};
+
+// One line of JSON, with its line feed. docs/truth.md describes the keys.
+std::string truth_frame_line(const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene, bool masks);
+
+// A mask as COCO's uncompressed run lengths: pixels column by column, counts of zeros and of others in turn, beginning with zeros.
+// `mask` (CV_8UC1) stands at `place` in a picture of size `size` that is zero elsewhere.
+std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size);
+
+// Instances in colours over the darkened picture; each object's visible box (solid), amodal box (dashed) and shares in percent. BGR.
+cv::Mat draw_truth(const cv::Mat& colour, const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene);
+
+}  // namespace waretwin
