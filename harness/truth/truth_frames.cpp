@@ -116,33 +116,40 @@ std::string truth_frame_line(const FrameTruth& truth, const std::vector<ObjectVi
 }
 
 cv::Mat draw_truth(const cv::Mat& colour, const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene) {
-  cv::Mat image = 0.45 * colour;
+  cv::Mat tinted = 0.45 * colour;
   for (const ObjectView& view : views) {
     const cv::Scalar tint = colour_of_id(view.id);
-    const cv::Mat shown = truth.instances == view.id;
-    if (view.amodal_px > 0) {
-      // What is hidden is tinted faintly.
-      cv::Mat part = image(view.mask_box);
-      cv::Mat faint;
-      cv::addWeighted(part, 0.8, cv::Mat(part.size(), part.type(), tint), 0.2, 0.0, faint);
-      faint.copyTo(part, view.amodal_mask);
-    }
-    cv::Mat full;
-    cv::addWeighted(colour, 0.4, cv::Mat(image.size(), image.type(), tint), 0.6, 0.0, full);
-    full.copyTo(image, shown);
+    if (view.amodal_px == 0) continue;
+    cv::Mat part = tinted(view.mask_box);
+    const cv::Mat flat(part.size(), part.type(), tint);
+    cv::Mat faint, full;
+    cv::addWeighted(part, 0.8, flat, 0.2, 0.0, faint);  // hidden parts, too
+    faint.copyTo(part, view.amodal_mask);
+    cv::addWeighted(colour(view.mask_box), 0.4, flat, 0.6, 0.0, full);
+    full.copyTo(part, truth.instances(view.mask_box) == view.id);
+  }
+  // Two thirds as large in the middle, so that a quarter of the width and height beyond each border has a place.
+  const auto across = [](int u, int length) { return static_cast<int>(std::lround((u + 0.25 * length) * 2.0 / 3.0)); };
+  const auto placed = [&](const cv::Rect& box) {
+    const cv::Point low(across(box.x, colour.cols), across(box.y, colour.rows));
+    return cv::Rect(low, cv::Point(across(box.br().x, colour.cols), across(box.br().y, colour.rows)));
+  };
+  cv::Mat image(colour.size(), CV_8UC3, cv::Scalar::all(24));
+  const cv::Rect middle = placed(cv::Rect({}, colour.size()));
+  cv::resize(tinted, image(middle), middle.size(), 0, 0, cv::INTER_AREA);
+  for (const ObjectView& view : views) {
+    draw_dashed(image, placed(view.amodal_box), colour_of_id(view.id));
+    if (!view.visible_box.empty()) cv::rectangle(image, placed(view.visible_box), colour_of_id(view.id), 2);
   }
   for (const ObjectView& view : views) {
-    const cv::Scalar tint = colour_of_id(view.id);
-    if (!view.visible_box.empty()) cv::rectangle(image, view.visible_box, tint, 2);
-    draw_dashed(image, view.amodal_box, tint);
-    if (view.amodal_px == 0) continue;
+    const cv::Rect at = placed(view.amodal_box) & cv::Rect({}, image.size());
+    if (at.empty()) continue;
     char text[128];
     std::snprintf(text, sizeof text, "%.40s %d: visible %.0f %%, occluded %.0f %%, truncated %.0f %%",
                   object_of(scene, view.id).class_name.c_str(), view.id, 100.0 * view.visible(), 100.0 * view.occluded(),
                   100.0 * view.truncated());
     const int width = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, nullptr).width;
-    const cv::Rect at = view.mask_box;
-    draw_text(image, {std::clamp(at.x + 4, 4, std::max(4, image.cols - width - 4)), std::clamp(at.y + 18, 18, image.rows - 6)}, text,
+    draw_text(image, {std::clamp(at.x, 4, std::max(4, image.cols - width - 4)), std::clamp(at.y - 6, 14, image.rows - 6)}, text,
               cv::Scalar::all(255));
   }
   return image;

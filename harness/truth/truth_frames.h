@@ -25,7 +25,8 @@ std::string truth_frame_line(const FrameTruth& truth, const std::vector<ObjectVi
 // `mask` (CV_8UC1) stands at `place` in a picture of size `size` that is zero elsewhere.
 std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size);
 
-// Instances in colours over the darkened picture; each object's visible box (solid), amodal box (dashed) and shares in percent. BGR.
+// Instances in colours over the darkened picture (CV_8UC3, BGR) with a margin around it; each object's visible box (solid), amodal box
+// (dashed) and shares in percent. As large as the picture.
 cv::Mat draw_truth(const cv::Mat& colour, const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene);
 
 }  // namespace waretwin

@@ -97,7 +97,7 @@ TEST(TruthFrames, RunLengthsGiveTheMaskBack) {
     const std::vector<int> runs = run_lengths(mask, place, size);
     int pixel = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (i > 0) EXPECT_GT(runs[i], 0);
+      EXPECT_TRUE(i == 0 || runs[i] > 0);
       for (int k = 0; k < runs[i]; ++k, ++pixel) {
         back.at<std::uint8_t>(pixel % size.height, pixel / size.height) = i % 2 == 1 ? 255 : 0;
       }
@@ -117,24 +117,28 @@ TEST(TruthFrames, ThePictureShowsInstancesAndBoxes) {
   view.amodal_px_total = 4000;
   view.visible_box = view.mask_box = {200, 80, 50, 40};
   view.amodal_mask = cv::Mat(40, 50, CV_8UC1, cv::Scalar(255));
-  view.amodal_box = {150, 80, 100, 40};
+  view.amodal_box = {200, 80, 131, 40};
   const cv::Mat colour(200, 300, CV_8UC3, cv::Scalar::all(100));
   const cv::Mat image = draw_truth(colour, truth, {view}, two_objects());
   ASSERT_EQ(image.size(), colour.size());
-  EXPECT_EQ(image.at<cv::Vec3b>(10, 10), cv::Vec3b::all(45)) << "darkened beside the object";
-  EXPECT_NE(image.at<cv::Vec3b>(112, 245), cv::Vec3b::all(45)) << "tinted";
-  // Along the left side of the amodal box some pixels are drawn and some are not.
+  // The picture is two thirds as large in the middle of its margin: (u, v) goes to (2/3 (u + 75), 2/3 (v + 50)).
+  EXPECT_EQ(image.at<cv::Vec3b>(60, 70), cv::Vec3b::all(45)) << "darkened beside the object";
+  EXPECT_EQ(image.at<cv::Vec3b>(3, 3), image.at<cv::Vec3b>(195, 295)) << "the margin";
+  EXPECT_NE(image.at<cv::Vec3b>(3, 3), cv::Vec3b::all(45));
+  EXPECT_NE(image.at<cv::Vec3b>(108, 213), cv::Vec3b::all(45)) << "tinted";
+  // Along the right side of the amodal box, beyond the picture, some pixels are drawn and some are not.
   int drawn = 0;
-  for (int v = 84; v < 116; ++v) drawn += image.at<cv::Vec3b>(v, 150) != cv::Vec3b::all(45) ? 1 : 0;
-  EXPECT_GT(drawn, 10);
-  EXPECT_LT(drawn, 32);
+  for (int v = 88; v < 111; ++v) drawn += image.at<cv::Vec3b>(v, 270) != image.at<cv::Vec3b>(3, 3) ? 1 : 0;
+  EXPECT_GT(drawn, 8);
+  EXPECT_LT(drawn, 23);
 }
 
 TEST(SensorPoses, AreThoseOfTheDriveThroughTheMounts) {
   Scenario scenario;
   scenario.name = "poses";
-  scenario.robot.drive_model = "exact";
-  scenario.robot.route = {Waypoint{0, 0}, Waypoint{1, 0}};
+  scenario.robot.drive.model = "exact";
+  scenario.robot.route.resize(2);
+  scenario.robot.route[1].x_m = 1.0;
   scenario.sensors = SensorsConfig::of_the_paper();
   Scene scene;
   Mesh floor;
@@ -144,7 +148,7 @@ TEST(SensorPoses, AreThoseOfTheDriveThroughTheMounts) {
   scene.materials.emplace_back();
   scene.meshes.push_back(floor);
   scene.instances.emplace_back();
-  SimulatedStream stream(scenario, std::make_shared<const Scene>(scene), {});
+  SimulatedStream stream(scenario, std::make_shared<const Scene>(scene), SimulationConfig());
   SensorPoses poses(stream, scenario.sensors);
   std::map<std::string, std::size_t> counts;
   while (const auto event = stream.next()) {
