@@ -3,10 +3,12 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
+#include "harness/program/inspect_motion.h"
 #include "harness/run/map_config.h"
 #include "harness/run/run_config.h"
 #include "harness/score/cuboid_file.h"
@@ -24,6 +26,7 @@ struct InspectOptions {
   CommonOptions common;
   std::string file;
   bool keys = false;
+  std::optional<double> motion_s;
 };
 
 void describe_objects(const std::vector<ListedObject>& objects) {
@@ -80,10 +83,13 @@ int inspect(const InspectOptions& options) {
   if (extension == ".yaml" || extension == ".yml") {
     const RunConfig defaults;
     RunConfig config = load_run_config(file, defaults, "", settings);
+    if (options.common.seed) config.scenario.seed = *options.common.seed;
+    if (options.motion_s) return inspect_motion(config.scenario, *options.motion_s, options.common.quiet);
     std::cout << (options.keys ? describe_config([&](Fields& f) { config.visit(f); }) : describe_scenario(config.scenario));
     if (!options.keys) std::cout << "route: " << to_seconds(RobotMotion(config.scenario.robot).duration()) << " s\n";
     return 0;
   }
+  if (options.motion_s) throw Error(file, "has no motion; --motion expects a scenario");
   if (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json")) {
     MapConfig config;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });
@@ -115,8 +121,13 @@ Command add_inspect_command(CLI::App& program) {
   command->add_option("FILE", options->file, "scenario, .glb, .gltf, recording's folder, map.waretwin, cuboids.json or a run's folder")
       ->required();
   command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
+  command->add_option("--motion", options->motion_s, "of a scenario: runs what moves for S seconds, without sensors, and says how it went")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 1e6));
   options->common.add_to(*command);
-  command->footer("Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys");
+  command->footer(
+      "Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys\n"
+      "  waretwin inspect scenes/warehouse/scenario.yaml --motion 3600");
   return {command, [options] { return inspect(*options); }};
 }
 

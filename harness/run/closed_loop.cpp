@@ -100,6 +100,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
   if (!map.frames.empty()) score.depth = depth_quality.result();
+  score.motion = stream.motion();
   score.timing_ms = summarise_stages(result.mapping.frames);
   score.frames_simulated = map.frames_seen;
   score.frames_mapped = static_cast<int>(map.frames.size());
