@@ -73,6 +73,20 @@ struct Matched {
   cv::Mat disparity, seen;
 };
 
+// A shadow next to a step of less than a pixel is narrower than a pixel itself: windows reach over it.
+void bridge_narrow_shadows(Matched& matched) {
+  parallel_for(static_cast<std::size_t>(matched.seen.rows), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      auto* seen = matched.seen.ptr<std::uint8_t>(y);
+      const auto* disparity = matched.disparity.ptr<float>(y);
+      // From the left, so that a pixel that was filled does not fill the next.
+      for (int x = 0; x + 1 < matched.seen.cols; ++x) {
+        if (seen[x] == 0 && seen[x + 1] != 0 && std::abs(disparity[x + 1] - disparity[x]) <= kJump_px) seen[x] = 1;
+      }
+    }
+  });
+}
+
 // Along rows (dx = 1, dy = 0) or columns.
 Matched fattened(const Matched& from, int reach, int dx, int dy) {
   Matched out = {from.disparity.clone(), from.seen.clone()};
@@ -119,7 +133,6 @@ cv::Mat StereoModel::texture(const StereoSignal& signal) const {
   // Of the window's rows: mean and mean square deviation of the ambient brightness, mean of the dots'.
   cv::Mat mean(ambient.rows, cols, CV_64FC1), square(ambient.rows, cols, CV_64FC1), dot_mean(ambient.rows, cols, CV_64FC1);
   parallel_for(static_cast<std::size_t>(ambient.rows), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> squares(static_cast<std::size_t>(ambient.cols));
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const auto* row = ambient.ptr<float>(y);
       auto *m = mean.ptr<double>(y), *s = square.ptr<double>(y), *d = dot_mean.ptr<double>(y);
@@ -167,6 +180,7 @@ cv::Mat StereoModel::read(const StereoSignal& signal, Stamp stamp) const {
   if (config.fattening) {
     matched = fattened(matched, config.window_px / 2, 1, 0);
     matched = fattened(matched, config.window_px / 2, 0, 1);
+    bridge_narrow_shadows(matched);
   }
   const cv::Mat textures = config.texture ? texture(signal) : cv::Mat();
   const RandomStream random(seed_, sensor_, "disparity_noise", stamp);

@@ -316,6 +316,27 @@ TEST(Stereo, WhatTheRightCameraDoesNotSeeIsAHoleUnlessTheForegroundGrowsOverIt) 
   EXPECT_FLOAT_EQ(at(286), 3.0f);
 }
 
+// A step of half a pixel of disparity hides half a pixel; one of three hides three, which no window reaches over.
+TEST(Stereo, ShadowsOfSmallStepsAreBridged) {
+  CameraConfig camera = quiet();
+  camera.stereo.occlusion = camera.stereo.fattening = true;
+  for (const double step : {0.5, 3.0}) {
+    StereoSignal signal = even(21.2 / 10.0);
+    signal.depth.colRange(400, 848).setTo(21.2 / (10.0 + step));
+    const int width = step < 1.0 ? 1 : 3;
+    signal.seen.colRange(400 - width, 400).setTo(0);
+    const cv::Mat depth = StereoModel(camera, 1, "camera").read(signal, 0);
+    // The foreground grows over the wide shadow, as it does over any within half a window.
+    for (int u = 390; u < 410; ++u) {
+      EXPECT_NEAR(depth.at<float>(240, u), 21.2 / (10.0 + (u >= (step < 1.0 ? 400 : 396) ? step : 0.0)), 0.00051) << step << " " << u;
+    }
+    camera.stereo.fattening = false;
+    const cv::Mat plain = StereoModel(camera, 1, "camera").read(signal, 0);
+    for (int u = 390; u < 410; ++u) EXPECT_EQ(plain.at<float>(240, u) == 0.0f, u >= 400 - width && u < 400) << u;
+    camera.stereo.fattening = true;
+  }
+}
+
 TEST(Stereo, TheCalibrationErrorStaysForTheRun) {
   CameraConfig camera = quiet();
   camera.stereo.calibration = true;
