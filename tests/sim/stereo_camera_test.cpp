@@ -225,6 +225,17 @@ TEST(StereoCamera, DepthIsRegisteredIntoTheColourView) {
   EXPECT_GT(compared, 30000);
 }
 
+// A sheet sends the dots back so bright that both pictures are white there.
+TEST(StereoCamera, RetroreflectorsAreHoles) {
+  for (const float gain : {0.0f, 220.0f}) {
+    Scene scene = fixtures::room(-1, 1.5f, -4, 4, 3);
+    fixtures::add_marker(scene, {1.499f, -0.2f, 0.8f}, 0.4f, gain);
+    const cv::Mat depth = Rig(std::move(scene), d435()).read(looking({0, 0, 1.0}));
+    EXPECT_EQ(depth.at<float>(240, 424) == 0.0f, gain > 0.0f) << gain;
+    EXPECT_GT(depth.at<float>(240, 600), 1.4f);
+  }
+}
+
 TEST(StereoCamera, EverySwitchChangesTheReading) {
   const Pose X_WD = looking({-1.0, 0, 1.4}, 0.3, 0.5);
   const cv::Mat all = Rig(fixtures::busy_hall(8), d435()).read(X_WD);
