@@ -67,7 +67,7 @@ class StereoDepthCamera final : public DepthCamera {
 
   DepthReading read(const cv::Mat&, Stamp stamp, const std::function<Pose(Stamp)>& X_WC) override {
     DepthReading reading;
-    reading.native = model_.read(optics_.look(X_WC(stamp) * X_CD_), stamp);
+    reading.native = model_.read(optics_.look(X_WC(stamp) * X_CD_, stamp), stamp);
     reading.registered = registration_(reading.native);
     return reading;
   }

@@ -21,7 +21,7 @@ float ambient_light(const Eigen::Vector3f& normal_W) { return 0.6f + 0.4f * norm
 StereoCamera::StereoCamera(std::shared_ptr<const RayCaster> ray_caster, const Surfaces& surfaces, const CameraConfig& camera)
     : ray_caster_(std::move(ray_caster)), surfaces_(surfaces), camera_(camera), intrinsics_(camera.depth_lens().intrinsics()) {}
 
-StereoSignal StereoCamera::look(const Pose& X_WD) const {
+StereoSignal StereoCamera::look(const Pose& X_WD, Stamp moment) const {
   const StereoConfig& config = camera_.stereo;
   const cv::Size size(intrinsics_.width, intrinsics_.height);
   StereoSignal signal;
@@ -30,6 +30,7 @@ StereoSignal StereoCamera::look(const Pose& X_WD) const {
   const Eigen::Vector3f left = X_WD.translation().cast<float>();
   const Eigen::Vector3f right = (X_WD * Eigen::Vector3d(config.baseline_m, 0.0, 0.0)).cast<float>();
   const Eigen::Matrix3f R = X_WD.linear().cast<float>();
+  const float time = ray_caster_->time_of(moment);
   const auto spread = static_cast<float>(1.0 / config.focal_px);
   const auto scale = static_cast<float>(config.depth_times_disparity());
   parallel_for(static_cast<std::size_t>(size.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -40,6 +41,7 @@ StereoSignal StereoCamera::look(const Pose& X_WD) const {
     std::vector<std::uint8_t> blocked;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (std::size_t x = 0; x < cols; ++x) {
+        rays[x].time = time;
         rays[x].origin = left;
         // z is 1 in the camera's frame, so that distances are depths.
         rays[x].direction = R * intrinsics_.ray(static_cast<double>(x), y).cast<float>();
@@ -59,6 +61,7 @@ StereoSignal StereoCamera::look(const Pose& X_WD) const {
         if (!config.occlusion) signal.seen.at<std::uint8_t>(y, column) = 1;
         if (!config.occlusion || static_cast<float>(x) - scale / z < -0.5f) continue;
         Ray ray;
+        ray.time = time;
         ray.origin = right;
         ray.direction = point.position - right;
         ray.far = 1.0f - kShort;

@@ -20,8 +20,8 @@ class StereoCamera {
   // `surfaces` outlives the camera.
   StereoCamera(std::shared_ptr<const RayCaster> ray_caster, const Surfaces& surfaces, const CameraConfig& camera);
 
-  // X_WD: the left camera in the world. The result depends on the pose and the hall alone.
-  StereoSignal look(const Pose& X_WD) const;
+  // X_WD: the left camera in the world at that moment of the ray caster's shutter. The result depends on the two and the hall alone.
+  StereoSignal look(const Pose& X_WD, Stamp moment) const;
 
  private:
   std::shared_ptr<const RayCaster> ray_caster_;

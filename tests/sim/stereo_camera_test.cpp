@@ -46,7 +46,7 @@ struct Rig {
 
   Rig(Scene scene, const CameraConfig& config, std::uint64_t seed = 1)
       : caster(caster_of(std::move(scene))), camera(config), surfaces(caster), model(config, seed, "camera") {}
-  StereoSignal look(const Pose& X_WD) const { return StereoCamera(caster, surfaces, camera).look(X_WD); }
+  StereoSignal look(const Pose& X_WD, Stamp moment = 0) const { return StereoCamera(caster, surfaces, camera).look(X_WD, moment); }
   cv::Mat read(const Pose& X_WD, Stamp stamp = 0) const { return model.read(look(X_WD), stamp); }
 };
 
@@ -233,6 +233,22 @@ TEST(StereoCamera, RetroreflectorsAreHoles) {
     const cv::Mat depth = Rig(std::move(scene), d435()).read(looking({0, 0, 1.0}));
     EXPECT_EQ(depth.at<float>(240, 424) == 0.0f, gain > 0.0f) << gain;
     EXPECT_GT(depth.at<float>(240, 600), 1.4f);
+  }
+}
+
+TEST(StereoCamera, LooksAtItsMoment) {
+  Scene scene;
+  const int mesh = add_mesh(scene, fixtures::unit_box(), add_material(scene, {0.6f, 0.6f, 0.6f}));
+  const int box = add_instance(scene, mesh, placed({1, -5, -5}, {1, 10, 10}));
+  const auto caster = std::make_shared<RayCaster>(std::make_shared<const Scene>(std::move(scene)));
+  caster->set_shutter(1000, 3000);
+  caster->set_motion(box, placed({1, -5, -5}, {1, 10, 10}), placed({3, -5, -5}, {1, 10, 10}));
+  caster->commit();
+  const Surfaces surfaces(caster);
+  for (const Stamp moment : {1000, 1500, 3000}) {
+    const StereoSignal signal = StereoCamera(caster, surfaces, d435()).look(looking({0, 0, 0}), moment);
+    EXPECT_NEAR(signal.depth.at<float>(240, 424), 1.0 + static_cast<double>(moment - 1000) / 1000.0, 1e-5);
+    EXPECT_EQ(signal.seen.at<std::uint8_t>(240, 424), 1) << "both cameras look at once";
   }
 }
 
