@@ -292,8 +292,11 @@ TEST(TimeOfFlightCamera, RetroreflectorsSaturate) {
       const Rig rig(std::move(scene), camera);
       const TimeOfFlightSignal signal = rig.look(standing(looking({0, 0, 1})));
       const cv::Mat depth = rig.model.read(signal, 0);
-      if (gain > 0.0f) EXPECT_NEAR(signal.signal.at<float>(288, 320), gain / (wall * wall), 0.02 * gain / (wall * wall)) << wall;
-      EXPECT_EQ(depth.at<float>(288, 320) == 0.0f, gain > 0.0f) << wall << " " << gain;
+      if (gain > 0.0f) {
+        EXPECT_NEAR(signal.signal.at<float>(288, 320), gain / (wall * wall), 0.02 * gain / (wall * wall)) << wall;
+      }
+      // The dark sheet without its glass is too dark at 3.5 m.
+      EXPECT_EQ(depth.at<float>(288, 320) == 0.0f, gain > 0.0f || wall > 3.0f) << wall << " " << gain;
       EXPECT_NEAR(depth.at<float>(288, 440), wall, 0.02) << wall;
     }
   }
