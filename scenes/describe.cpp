@@ -47,6 +47,7 @@ void add_material(std::string& text, const Scene& scene, const Material& m) {
   if (m.alpha_mask) uses += ", alpha mask";
   if (m.double_sided) uses += ", double-sided";
   if (!std::isnan(m.reflectivity_850nm)) uses += ", reflectivity at 850 nm " + std::to_string(m.reflectivity_850nm).substr(0, 4);
+  if (m.retroreflection > 0.0f) uses += ", retroreflective " + std::to_string(static_cast<int>(std::lround(m.retroreflection)));
   add_line(text, "  %.80s: rgba %.2f %.2f %.2f %.2f, metallic %.2f, roughness %.2f%.600s", shown(m.name),
            static_cast<double>(m.base_colour[0]), static_cast<double>(m.base_colour[1]), static_cast<double>(m.base_colour[2]),
            static_cast<double>(m.base_colour[3]), static_cast<double>(m.metallic), static_cast<double>(m.roughness), uses.c_str());

@@ -64,19 +64,23 @@ void laser_scan_with_spot(benchmark::State& state) {
 }
 
 // The depth camera's own picture and its warp into the colour view, beside depth_only (ideal depth, of the colour view alone).
-void time_of_flight_depth(benchmark::State& state) {
+void own_depth(benchmark::State& state, const char* preset) {
   const Surfaces surfaces(hall());
-  const auto camera = DepthCamera::make(CameraConfig{}, 1, "camera", hall(), surfaces);
+  const auto camera = DepthCamera::make(CameraConfig::make(preset), 1, "camera", hall(), surfaces);
   for (auto _ : state) {
     benchmark::DoNotOptimize(camera->read({}, 0, [](Stamp) { return camera_pose(); }).registered.data);
   }
 }
+
+void time_of_flight_depth(benchmark::State& state) { own_depth(state, "azure_kinect"); }
+void stereo_depth(benchmark::State& state) { own_depth(state, "realsense_d435"); }
 
 BENCHMARK(depth_only)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_unshadowed)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_with_shadows)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(colour_with_shadows_and_occlusion)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(time_of_flight_depth)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(stereo_depth)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(laser_scan_with_spot)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(laser_scan)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
