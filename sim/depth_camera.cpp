@@ -33,7 +33,7 @@ class TimeOfFlightDepthCamera final : public DepthCamera {
         exposure_s_(camera.time_of_flight.motion ? camera.time_of_flight.exposure_s : 0.0),
         model_(camera, seed, sensor),
         optics_(std::move(ray_caster), surfaces, camera, model_.rays()),
-        registration_(model_.rays(), X_CD_, Lens(camera.intrinsics())) {}
+        registration_(model_.rays(), X_CD_, camera.view()) {}
 
   DepthReading read(const cv::Mat&, Stamp stamp, const std::function<Pose(Stamp)>& X_WC) override {
     TimeOfFlightCamera::PulsePoses X_WD;

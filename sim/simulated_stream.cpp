@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "sensors/laser_noise.h"
 #include "sensors/odometry_model.h"
+#include "sim/colour_camera.h"
 #include "sim/depth_camera.h"
 #include "sim/laser_spot.h"
 #include "sim/ray_caster.h"
@@ -78,6 +79,7 @@ struct SimulatedStream::State {
   std::shared_ptr<const RayCaster> ray_caster;
   RobotMotion motion;
   Renderer renderer;
+  std::map<std::string, ColourCamera> colour_cameras;
   std::map<std::string, std::unique_ptr<DepthCamera>> depth_cameras;
   std::map<std::string, LaserNoiseModel> laser_noise;
   OdometryModel odometry;
@@ -117,6 +119,7 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
   }
   for (const auto& [name, camera] : sensors.cameras) {
     sources.push_back({SensorKind::kCamera, name, camera.rate_hz, turns_until(end, camera.rate_hz)});
+    colour_cameras.emplace(name, ColourCamera(camera, scenario.seed, name, renderer));
     depth_cameras.emplace(name, DepthCamera::make(camera, scenario.seed, name, ray_caster, renderer.surfaces()));
   }
   describe();
@@ -125,7 +128,7 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
 void SimulatedStream::State::describe() {
   info.source = scenario.name;
   for (const auto& [name, camera] : scenario.sensors.cameras) {
-    info.cameras[name] = {camera.intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
+    info.cameras[name] = {camera.view().intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
   }
   for (const auto& [name, laser] : scenario.sensors.lasers) info.lasers[name] = {laser.mount.X_BL(), laser.rate_hz};
   info.has_odometry = scenario.sensors.odometry.enabled;
@@ -148,18 +151,12 @@ LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) con
 
 void SimulatedStream::State::render(RgbdFrame& frame) {
   const auto begin = std::chrono::steady_clock::now();
-  const CameraConfig& camera = scenario.sensors.cameras.at(frame.sensor);
-  RenderRequest request;
-  request.colour = config.colour;
-  request.seed = scenario.seed;
-  request.sensor = frame.sensor;
-  request.stamp = frame.stamp;
-  FrameImages images = renderer.render(camera.intrinsics(), X_WC(frame.sensor, frame.stamp), request);
+  const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
+  FrameImages images = colour_cameras.at(frame.sensor).look(frame.stamp, at, config.colour);
   frame.colour = config.colour ? images.colour : cv::Mat(images.depth.size(), CV_8UC3, cv::Scalar::all(0));
   if (config.truth_depth) {
     frame.depth = depth_from_millimetres(depth_to_millimetres(images.depth));
   } else {
-    const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
     DepthReading reading = depth_cameras.at(frame.sensor)->read(images.depth, frame.stamp, at);
     frame.depth = reading.registered;
     frame.native_depth = reading.native;

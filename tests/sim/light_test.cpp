@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "sensors/tone_curve.h"
 #include "sim/direct_light.h"
 #include "sim/path_tracer.h"
 #include "sim/renderer.h"
 #include "sim/surfaces.h"
-#include "sim/tone_curve.h"
 #include "tests/sim/fixtures.h"
 
 namespace waretwin {
