@@ -18,6 +18,10 @@ ColourCamera::ColourCamera(const CameraConfig& camera, std::uint64_t seed, const
   if (bent_ && camera.colour.rectify) rectification_.emplace(lens_, camera.intrinsics());
 }
 
+Stamp ColourCamera::half_span() const {
+  return -row_delay(0) + (camera_.colour.motion_blur ? from_seconds(0.5 * camera_.colour.exposure_s) : 0);
+}
+
 Stamp ColourCamera::row_delay(int v) const {
   if (!camera_.colour.rolling_shutter) return 0;
   return from_seconds(camera_.colour.readout_s * (v - 0.5 * (camera_.height - 1)) / std::max(camera_.height - 1, 1));
@@ -25,12 +29,16 @@ Stamp ColourCamera::row_delay(int v) const {
 
 std::vector<PixelRays::Row> ColourCamera::rows(Stamp stamp, const std::function<Pose(Stamp)>& X_WC) const {
   const Stamp half = camera_.colour.motion_blur ? from_seconds(0.5 * camera_.colour.exposure_s) : 0;
+  const RayCaster& caster = renderer_.ray_caster();
   std::vector<PixelRays::Row> out(static_cast<std::size_t>(camera_.height));
   for (std::size_t v = 0; v < out.size(); ++v) {
     const Stamp middle = stamp + row_delay(static_cast<int>(v));
     out[v].X_WC = X_WC(middle);
     out[v].X_WC_begin = half > 0 ? X_WC(middle - half) : out[v].X_WC;
     out[v].X_WC_end = half > 0 ? X_WC(middle + half) : out[v].X_WC;
+    out[v].begin = caster.time_of(middle - half);
+    out[v].middle = caster.time_of(middle);
+    out[v].end = caster.time_of(middle + half);
   }
   return out;
 }
@@ -51,7 +59,9 @@ FrameImages ColourCamera::look(Stamp stamp, const std::function<Pose(Stamp)>& X_
   const PixelRays rays(model_->rays(), 1.0 / lens_.intrinsics().fx, taken);
   FrameImages images = renderer_.render(rays, request);
   if (colour) {
-    if (rays.lasts() && renderer_.options().quality == "fast") {
+    const bool moves =
+        std::any_of(taken.begin(), taken.end(), [](const PixelRays::Row& row) { return row.X_WC_begin.matrix() != row.X_WC_end.matrix(); });
+    if (moves && renderer_.options().quality == "fast") {
       const double row_time =
           camera_.colour.rolling_shutter ? camera_.colour.readout_s / (camera_.height - 1) / camera_.colour.exposure_s : 0.0;
       images.radiance = motion_blurred(images.radiance, images.depth, model_->rays(), taken, row_time);
@@ -65,16 +75,18 @@ FrameImages ColourCamera::look(Stamp stamp, const std::function<Pose(Stamp)>& X_
     if (classes) images.classes = rectification_->labels(images.classes);
   }
 
-  const bool at_once =
-      std::all_of(taken.begin(), taken.end(), [&](const PixelRays::Row& row) { return row.X_WC.matrix() == X_WC_now.matrix(); });
+  const float time_now = renderer_.ray_caster().time_of(stamp);
+  const bool at_once = std::all_of(taken.begin(), taken.end(), [&](const PixelRays::Row& row) {
+    return row.X_WC.matrix() == X_WC_now.matrix() && row.middle == time_now;
+  });
   if (!at_once || rectification_) {
     RenderRequest geometry = request;
     geometry.radiance = geometry.classes = false;
     if (camera_.colour.rectify || !bent_) {
       images.depth = renderer_.render(camera_.intrinsics(), X_WC_now, geometry).depth;
     } else {
-      const PixelRays now(model_->rays(), 1.0 / lens_.intrinsics().fx,
-                          std::vector<PixelRays::Row>(taken.size(), {.X_WC_begin = X_WC_now, .X_WC = X_WC_now, .X_WC_end = X_WC_now}));
+      const PixelRays::Row row = {X_WC_now, X_WC_now, X_WC_now, time_now, time_now, time_now};
+      const PixelRays now(model_->rays(), 1.0 / lens_.intrinsics().fx, std::vector<PixelRays::Row>(taken.size(), row));
       images.depth = renderer_.render(now, geometry).depth;
     }
   }

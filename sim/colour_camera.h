@@ -24,6 +24,9 @@ class ColourCamera {
   // does not cover the view.
   ColourCamera(const CameraConfig& camera, std::uint64_t seed, const std::string& sensor, Renderer& renderer);
 
+  // No ray of a picture travels earlier or later than this before and after its stamp: what the ray caster's shutter must cover.
+  Stamp half_span() const;
+
   // One picture. X_WC: the camera in the world at any time. All images have the camera's size and are in CameraConfig::view.
   // - colour, instances and, when asked for, classes agree to the pixel: each row's moment and the lens are in them, and where the picture
   //   is undistorted, a label is that of the sensor pixel nearest to the place. A blurred edge's label is that of the middle of its
@@ -31,6 +34,7 @@ class ColourCamera {
   // - depth is what an ideal depth camera sees at the stamp, all rows at once. Where that is not along the colour's rays, it is looked at
   //   apart: it agrees with the colours of a camera that stands still, and else with RgbdFrame::depth.
   // - normals are not made.
+  // Rays travel at their own times (Ray::time) within the ray caster's shutter; in quality fast, blur is that of the camera's motion alone.
   // Without any effect the colours are those of Renderer::render.
   FrameImages look(Stamp stamp, const std::function<Pose(Stamp)>& X_WC, bool colour, bool classes = false);
 

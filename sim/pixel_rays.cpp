@@ -7,11 +7,11 @@
 
 namespace waretwin {
 
-PixelRays::PixelRays(const Intrinsics& intrinsics, const Pose& X_WC)
+PixelRays::PixelRays(const Intrinsics& intrinsics, const Pose& X_WC, float time)
     : width_(intrinsics.width),
       height_(intrinsics.height),
       spread_(static_cast<float>(1.0 / intrinsics.fx)),
-      station_{X_WC.translation().cast<float>(), X_WC.linear().cast<float>(), 0.0f},
+      station_{X_WC.translation().cast<float>(), X_WC.linear().cast<float>(), time},
       corner_(X_WC.linear() * intrinsics.ray(0.0, 0.0)),
       right_(X_WC.linear().col(0) / intrinsics.fx),
       down_(X_WC.linear().col(1) / intrinsics.fy) {}
@@ -48,6 +48,7 @@ Ray PixelRays::at(int u, int v) const {
   Ray ray;
   if (rows_.empty()) {
     ray.origin = station_.origin;
+    ray.time = station_.time;
     ray.direction = pinhole(u, v);
     return ray;
   }
@@ -55,6 +56,7 @@ Ray PixelRays::at(int u, int v) const {
   const cv::Vec2f& direction = directions_.ptr<cv::Vec2f>(y)[std::clamp(u, 0, width_ - 1)];
   const Station& station = rows_[static_cast<std::size_t>(y)].middle;
   ray.origin = station.origin;
+  ray.time = station.time;
   ray.direction = station.R_WC * Eigen::Vector3f(direction[0], direction[1], 1.0f);
   return ray;
 }
@@ -63,6 +65,7 @@ Ray PixelRays::at(double u, double v, float moment) const {
   Ray ray;
   if (rows_.empty()) {
     ray.origin = station_.origin;
+    ray.time = station_.time;
     ray.direction = pinhole(u, v);
     return ray;
   }
@@ -71,6 +74,7 @@ Ray PixelRays::at(double u, double v, float moment) const {
   const Eigen::Vector2f xy = bent(u, v);
   const Eigen::Vector3f direction(xy.x(), xy.y(), 1.0f);
   // In the milliseconds of an exposure the way between is straight and turns are small: a chord in place of the arc.
+  ray.time = row.begin.time + moment * (row.end.time - row.begin.time);
   ray.origin = row.begin.origin + moment * (row.end.origin - row.begin.origin);
   const Eigen::Vector3f first = row.begin.R_WC * direction, last = row.end.R_WC * direction;
   ray.direction = first + moment * (last - first);

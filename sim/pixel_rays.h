@@ -17,11 +17,11 @@ class PixelRays {
   // Where the camera is while one row is exposed.
   struct Row {
     Pose X_WC_begin = Pose::Identity(), X_WC = Pose::Identity(), X_WC_end = Pose::Identity();  // first, middle, last moment
-    float begin = 0.0f, middle = 0.0f, end = 0.0f;                                             // the same as Ray::time
+    float begin = Ray().time, middle = Ray().time, end = Ray().time;                           // the same as Ray::time
   };
 
-  // A pinhole camera, all pixels at one moment.
-  PixelRays(const Intrinsics& intrinsics, const Pose& X_WC);
+  // A pinhole camera, all pixels at one moment, which `time` is as Ray::time.
+  PixelRays(const Intrinsics& intrinsics, const Pose& X_WC, float time = Ray().time);
   // Through a lens, each row at its own time. `directions`: CV_32FC2, x and y of each pixel's ray (x, y, 1), shared, not copied. As many
   // rows as it has. `spread`: angle of a pixel, radians.
   PixelRays(const cv::Mat& directions, double spread, const std::vector<Row>& rows);

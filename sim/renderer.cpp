@@ -120,6 +120,7 @@ struct Renderer::State {
   std::vector<float> visible, openness, scratch;
   SurfaceGuide guide, half_guide;
   std::vector<Eigen::Vector3f> half_positions, half_normals;
+  std::vector<float> half_times;
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -163,6 +164,7 @@ void Renderer::State::prepare(bool shaded) {
   half_guide.resize((width + 1) / 2, (height + 1) / 2);
   half_positions.resize(half_guide.depth.size());
   half_normals.resize(half_guide.depth.size());
+  half_times.resize(half_guide.depth.size());
 }
 
 // Geometry and, with a seed for the shadow rays, light before shadows are smoothed. A tile's hits are used while they are in the cache.
@@ -270,6 +272,7 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
       half_guide.normal[h] = guide.normal[p];
       half_positions[h] = lifted(point);
       half_normals[h] = point.face_normal;
+      half_times[h] = ray.time;
     }
     if (!options.shadows || !(parts.total > 0.0f)) continue;
     // Every other pixel, as on a chessboard; the filter fills the rest.
@@ -280,7 +283,8 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
     // Of each quad the first and the last pixel are left: two numbers a quad.
     const SpreadPoint sample = points.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
     const int light = DirectLight::choose(parts, sample.a);
-    shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
+    shadows[count] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
+    shadows[count++].ray.time = ray.time;
   }
   if (count == 0) return;
   // Rays to one light travel together.
@@ -323,6 +327,7 @@ void Renderer::State::find_openness(std::uint32_t seed) {
             const Eigen::Vector2f around = circle(sample.b);
             Ray ray;
             ray.origin = half_positions[h];
+            ray.time = half_times[h];
             ray.direction =
                 radius * around.x() * a + radius * around.y() * b + std::sqrt(std::max(0.0f, 1.0f - sample.a)) * half_normals[h];
             // A random reach makes blocking fade with distance at the price of one yes-or-no ray.
@@ -393,10 +398,11 @@ Renderer::~Renderer() = default;
 
 const Surfaces& Renderer::surfaces() const { return state_->surfaces; }
 
+const RayCaster& Renderer::ray_caster() const { return *state_->ray_caster; }
 const RenderOptions& Renderer::options() const { return state_->options; }
 
 FrameImages Renderer::render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request) {
-  return render(PixelRays(intrinsics, X_WC), request);
+  return render(PixelRays(intrinsics, X_WC, state_->ray_caster->time_of(request.stamp)), request);
 }
 
 FrameImages Renderer::render(const PixelRays& pixel_rays, const RenderRequest& request) {

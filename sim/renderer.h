@@ -35,13 +35,15 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // The same bytes for the same arguments, whatever was rendered before and at any thread count.
+  // At request.stamp, within the ray caster's shutter. The same bytes for the same arguments, whatever was rendered before and at any
+  // thread count.
   FrameImages render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request);
   // Along any rays. Quality path looks during the whole exposure, fast in its middle, as geometry does in both.
   FrameImages render(const PixelRays& pixel_rays, const RenderRequest& request);
 
   // The hall's surfaces, for sensors that look with other light; as long as the renderer lives.
   const Surfaces& surfaces() const;
+  const RayCaster& ray_caster() const;
   const RenderOptions& options() const;
 
  private:
