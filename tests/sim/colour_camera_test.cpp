@@ -375,6 +375,65 @@ TEST(ColourCamera, LabelsAreThoseOfTheColours) {
   }
 }
 
+TEST(ColourCamera, RowsSeeMovingThingsAtTheirTime) {
+  // The camera stands, a board slides sideways by 6 m/s: its edge leans, its depth does not, and in quality path it is blurred.
+  Scene scene;
+  Mesh board;
+  fixtures::add_quad(board, {0, 0, -9}, {0, 0, 9}, {0, 19, 9}, {0, 19, -9});
+  add_instance(scene, add_mesh(scene, board, add_glowing(scene, {1, 1, 1})), Eigen::Affine3f::Identity(), add_object(scene, "board"));
+  scene.ambient = scene.background = {0, 0, 0};
+  const auto caster = std::make_shared<RayCaster>(std::make_shared<const Scene>(std::move(scene)));
+  CameraConfig camera = cut_out(200, 60);
+  camera.colour.rolling_shutter = camera.colour.motion_blur = true;
+  const Intrinsics k = camera.intrinsics();
+  const Stamp stamp = 400'000'000;
+  const double speed = 6.0;
+  for (const char* name : {"fast", "path"}) {
+    Renderer renderer(caster, quality(name, 64));
+    ColourCamera eye(camera, 1, "camera", renderer);
+    const Stamp span = eye.half_span();
+    EXPECT_EQ(span, from_seconds(0.5 * camera.colour.readout_s + 0.5 * camera.colour.exposure_s));
+    const auto at = [&](Stamp when) {
+      Eigen::Affine3f X = Eigen::Affine3f::Identity();
+      X.translation() = Eigen::Vector3f(4, static_cast<float>(speed * to_seconds(when - stamp)), 0);
+      return X;
+    };
+    caster->set_shutter(stamp - span, stamp + span);
+    caster->set_motion(0, at(stamp - span), at(stamp + span));
+    caster->commit();
+    const FrameImages images = eye.look(
+        stamp,
+        [](Stamp) {
+          return looking({0, 0, 1});
+        },
+        true);
+    const auto edge = [&](double after_s) { return k.cx - k.fx * speed * after_s / 4.0; };
+    EXPECT_GT(edge(-0.01) - edge(0.01), 9.0);
+    for (int v = 0; v < 60; ++v) {
+      const double middle = camera.colour.readout_s * (v - 29.5) / 59.0;
+      for (int u = 80; u < 120; ++u) {
+        const cv::Vec3b seen = images.colour.at<cv::Vec3b>(v, u);
+        if (std::abs(u - edge(middle)) > 0.02) {
+          ASSERT_EQ(images.instances.at<std::uint16_t>(v, u), u < edge(middle) ? 1 : 0) << name << " " << u << " " << v;
+        }
+        if (std::abs(u - edge(0.0)) > 0.02) {
+          ASSERT_EQ(images.depth.at<float>(v, u) > 0.0f, u < edge(0.0)) << name;
+        }
+        if (std::string(name) == "fast") continue;
+        const double width = edge(-0.5 * camera.colour.exposure_s) - edge(0.5 * camera.colour.exposure_s);
+        const double share = std::clamp(0.5 - (u - edge(middle)) / width, 0.0, 1.0);
+        const double inexact = 0.6 / width + 0.02;  // a pixel's own half
+        ASSERT_GE(seen[0], tone_mapped(static_cast<float>(share - inexact)) - 1) << u << " " << v;
+        ASSERT_LE(seen[0], tone_mapped(static_cast<float>(share + inexact)) + 1) << u << " " << v;
+        if (share > 0.2 && share < 0.8) {
+          ASSERT_GT(seen[0], 20);
+          ASSERT_LT(seen[0], tone_mapped(0.98f));
+        }
+      }
+    }
+  }
+}
+
 TEST(ColourCamera, DepthIsThatOfTheStampInTheView) {
   const auto caster = caster_of(fixtures::busy_hall(16));
   Renderer renderer(caster, {});
