@@ -5,8 +5,8 @@ namespace waretwin {
 void ColourConfig::visit(Fields& f) {
   f.group("lens", lens, "distortion of the colour lens");
   f("rectify", rectify, "true: the driver undistorts pictures to the pinhole view");
-  f("readout_s", readout_s, "from the exposure of the first row to that of the last", {.min = 0, .max = 1});
-  f("exposure_s", exposure_s, "of each row", {.min = 1e-6, .max = 1});
+  f("readout_s", readout_s, "from the exposure of the first row to that of the last", {.min = 0, .max = 0.2});
+  f("exposure_s", exposure_s, "of each row", {.min = 1e-6, .max = 0.2});
   f("sensitivity_e_per_s", sensitivity_e_per_s, "photo-electrons a second at radiance 1", {.min = 1, .max = 1e12});
   f("full_well_e", full_well_e, "electrons that a pixel holds", {.min = 1, .max = 1e9});
   f("read_noise_e", read_noise_e, "standard deviation in electrons", {.min = 0, .max = 1e6});

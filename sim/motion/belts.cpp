@@ -11,6 +11,7 @@ constexpr double kThickness = 0.12, kGuardThickness = 0.03, kGuardDepth = 0.05;
 constexpr double kGuardFriction = 0.05;  // smooth rails: they guide, they don't brake
 constexpr double kArcStep = 0.1;         // radians an arc's pieces turn at most
 constexpr double kSteady_s = 0.5;
+constexpr double kShortestRide = 60;  // samples; shorter ones say nothing
 
 // A piece of the strip between two places along and two across it, from z0 to z1.
 void add_pieces(BulletWorld& world, BodyRole& role, const BeltSurface& surface, double right, double left, double z0, double z1,
@@ -90,6 +91,16 @@ void Belts::run(double time_s, double step_s) {
   }
 }
 
+void Belts::end_ride(Item& item) {
+  if (static_cast<double>(item.ride_samples) >= kShortestRide) {
+    const double mean = item.ride_sum / static_cast<double>(item.ride_samples);
+    Belt& belt = belts_[static_cast<std::size_t>(item.belt)];
+    if (std::abs(mean - 1.0) > std::abs(belt.worst_ride - 1.0)) belt.worst_ride = mean;
+  }
+  item.ride_sum = 0.0;
+  item.ride_samples = 0;
+}
+
 void Belts::measure(Items& items, double step_s) {
   std::sort(carried_.begin(), carried_.end());
   carried_.erase(std::unique(carried_.begin(), carried_.end()), carried_.end());
@@ -97,10 +108,14 @@ void Belts::measure(Items& items, double step_s) {
   for (Item& item : items.all()) {
     const auto first = std::find_if(next, carried_.end(), [&](const auto& pair) { return pair.first >= item.role.index; });
     next = std::find_if(first, carried_.end(), [&](const auto& pair) { return pair.first > item.role.index; });
-    if (!item.present) continue;
-    const auto belts_below = next - first;
-    item.alone_s = belts_below == 1 && first->second == item.belt ? item.alone_s + step_s : 0.0;
-    if (belts_below > 0) item.belt = first->second;
+    if (!item.present) {
+      end_ride(item);
+      continue;
+    }
+    const bool alone = next - first == 1 && first->second == item.belt;
+    if (!alone) end_ride(item);
+    item.alone_s = alone ? item.alone_s + step_s : 0.0;
+    if (first != next) item.belt = first->second;
     if (item.belt < 0) continue;
     Belt& belt = belts_[static_cast<std::size_t>(item.belt)];
     const Eigen::Vector3d p = item.middle();
@@ -111,11 +126,15 @@ void Belts::measure(Items& items, double step_s) {
       continue;
     }
     const double surface_speed = belt.speed_mps * belt.surface.speed_factor(p.head<2>());
-    if (!(item.alone_s > kSteady_s && belt.steady_s > kSteady_s && std::abs(surface_speed) > 0.01)) continue;
+    if (!(item.alone_s > kSteady_s && belt.steady_s > kSteady_s && std::abs(surface_speed) > 0.01)) {
+      end_ride(item);
+      continue;
+    }
     const double ratio = from_bullet(item.body->getLinearVelocity()).head<2>().dot(belt.surface.travel(p.head<2>())) / surface_speed;
+    item.ride_sum += ratio;
+    ++item.ride_samples;
     belt.ratio_sum += ratio;
     ++belt.samples;
-    if (std::abs(ratio - 1.0) > std::abs(belt.ratio_worst - 1.0)) belt.ratio_worst = ratio;
   }
   carried_.clear();
 }

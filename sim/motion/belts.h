@@ -17,8 +17,9 @@ struct Belt {
   BodyRole role, guard_role;
   double speed_mps = 0.0;  // now
   double steady_s = 0.0;   // how long it has run at the speed it is to run at
-  // Of items that it alone carried for half a second at a steady speed: their speed over the surface's.
-  double ratio_sum = 0.0, ratio_worst = 1.0;
+  // A ride is the time in which it alone carries an item at a steady speed, less the first half second. Speeds of items over the surface's:
+  // summed over all samples of all rides, and the mean of the ride that is farthest from 1.
+  double ratio_sum = 0.0, worst_ride = 1.0;
   long samples = 0;
 
   double wanted_speed(double time_s) const;
@@ -36,6 +37,7 @@ class Belts {
 
  private:
   void add_bodies(BulletWorld& world, Belt& belt, int index);
+  void end_ride(Item& item);
 
   std::deque<Belt> belts_;                    // keeps addresses
   std::vector<std::pair<int, int>> carried_;  // in the last step: index of an item, index of a belt below it

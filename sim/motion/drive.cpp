@@ -99,7 +99,8 @@ void Drive::push_casters() {
       const btVector3 arm = to_bullet(Eigen::Vector3d(foot_W - centre_W));
       const double rise = body_->getVelocityInLocalPoint(arm).z();
       const double force = preload - stiffness * foot_W.z() - damping * rise;
-      if (force > 0.0) body_->applyForce({0, 0, force}, arm);
+      // As an impulse: Bullet's friction overlooks the torque of forces.
+      if (force > 0.0) body_->applyImpulse({0, 0, force * world_.step_s()}, arm);
     }
   }
 }

@@ -313,7 +313,7 @@ MotionReport HallMotion::report() const {
     entry.wanted_mps = belt.wanted_speed(s.time_of(s.step));
     if (belt.samples > 0) {
       entry.mean_ratio = belt.ratio_sum / static_cast<double>(belt.samples);
-      entry.worst_ratio = belt.ratio_worst;
+      entry.worst_ratio = belt.worst_ride;
     }
     entry.carried_s = static_cast<double>(belt.samples) * s.world->step_s();
     report.belts.push_back(entry);

@@ -37,7 +37,8 @@ struct RobotContact {
 struct BeltReport {
   std::string name;
   double wanted_mps = 0.0;  // now
-  // Of items that it alone carried at a steady speed: their speed over the surface's; mean and the one farthest from 1. 1 without items.
+  // Of items that it alone carried at a steady speed: their speed over the surface's; the mean of all, and that of the ride farthest
+  // from 1. 1 without items.
   double mean_ratio = 1.0, worst_ratio = 1.0;
   double carried_s = 0.0;  // over how much time of items
 };

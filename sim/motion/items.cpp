@@ -101,6 +101,8 @@ void Items::let_in(double time_s) {
         free->touched_floor = false;
         free->belt = -1;
         free->alone_s = 0.0;
+        free->ride_sum = 0.0;
+        free->ride_samples = 0;
         in = true;
       }
     }

@@ -19,6 +19,8 @@ struct Item {
   bool touched_floor = false;  // since it came in
   int belt = -1;               // index of the belt that last carried it; -1 = none yet
   double alone_s = 0.0;        // how long that belt alone has carried it
+  double ride_sum = 0.0;       // of its speed over the surface's in the present ride; see Belt
+  long ride_samples = 0;
 
   Pose X_WG() const { return from_bullet(body->getWorldTransform()) * X_GS.inverse(); }
   Eigen::Vector3d middle() const { return from_bullet(body->getWorldTransform().getOrigin()); }
