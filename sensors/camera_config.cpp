@@ -71,9 +71,12 @@ CameraConfig CameraConfig::make(const std::string& preset) {
     camera.depth_min_m = 0.19;
     camera.depth_max_m = 10.0;
     camera.field = {.horizontal_deg = 87.0, .vertical_deg = 58.0, .tilt_down_deg = 0.0, .shape = "rectangle"};
+    // Its colour pictures leave the device undistorted.
+    camera.colour.lens_distortion = false;
     return camera;
   }
   camera.depth_model = "gaussian";
+  camera.colour.set_ideal();
   if (preset == "azure_kinect_gaussian") return camera;
   if (preset == "ideal") {
     camera.field = {.horizontal_deg = 179.0, .vertical_deg = 179.0, .tilt_down_deg = 0.0, .shape = "rectangle"};
@@ -110,6 +113,29 @@ void CameraConfig::set_depth_mode(const std::string& name) {
 Intrinsics CameraConfig::intrinsics() const {
   return Intrinsics::from_field_of_view(width, height, to_radians(horizontal_fov_deg), to_radians(vertical_fov_deg));
 }
+
+Lens CameraConfig::colour_lens() const {
+  const Intrinsics pinhole = intrinsics();
+  if (!colour.lens_distortion || colour.lens.is_none()) return Lens(pinhole);
+  const Lens bent(pinhole, colour.lens);
+  double reach = 0.0;  // of the view's border, over the image's
+  const auto reach_out = [&](int u, int v) {
+    const auto pixel = bent.project(pinhole.ray(u, v));
+    if (!pixel) throw Error("colour.lens folds over within the image; expected a distortion that grows from the middle to the corners");
+    reach = std::max({reach, std::abs(pixel->x() - pinhole.cx) / pinhole.cx, std::abs(pixel->y() - pinhole.cy) / pinhole.cy});
+  };
+  for (int u = 0; u < width; ++u) {
+    reach_out(u, 0);
+    reach_out(u, height - 1);
+  }
+  for (int v = 0; v < height; ++v) {
+    reach_out(0, v);
+    reach_out(width - 1, v);
+  }
+  return Lens(Intrinsics::checked(width, height, pinhole.fx / reach, pinhole.fy / reach, pinhole.cx, pinhole.cy), colour.lens);
+}
+
+Lens CameraConfig::view() const { return colour.rectify ? Lens(intrinsics()) : colour_lens(); }
 
 Lens CameraConfig::depth_lens() const {
   if (depth_model == "stereo") {
@@ -161,6 +187,7 @@ void CameraConfig::visit(Fields& f) {
   f.group("time_of_flight", time_of_flight, "depth_model time_of_flight: lens, light and errors");
   f.group("stereo", stereo, "depth_model stereo: cameras, projector and errors");
   f.group("noise", noise, "depth_model gaussian: error of the depth reading");
+  f.group("colour", colour, "lens, shutter and errors of the colour pictures");
   f.group("mount", mount, "place on the vehicle");
 }
 

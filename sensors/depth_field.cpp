@@ -26,11 +26,14 @@ bool in_depth_field(const DepthField& field, const Eigen::Vector3d& ray_C) {
 }
 
 cv::Mat depth_field_mask(const CameraConfig& camera) {
-  const Intrinsics intrinsics = camera.intrinsics();
-  cv::Mat mask(intrinsics.height, intrinsics.width, CV_8UC1);
+  const Lens view = camera.view();
+  cv::Mat mask(camera.height, camera.width, CV_8UC1);
   for (int v = 0; v < mask.rows; ++v) {
     auto* row = mask.ptr<std::uint8_t>(v);
-    for (int u = 0; u < mask.cols; ++u) row[u] = in_depth_field(camera.field, intrinsics.ray(u, v)) ? 255 : 0;
+    for (int u = 0; u < mask.cols; ++u) {
+      const auto ray = view.ray(u, v);
+      row[u] = ray && in_depth_field(camera.field, *ray) ? 255 : 0;
+    }
   }
   return mask;
 }

@@ -36,7 +36,7 @@ class TimeOfFlightDepthCamera final : public DepthCamera {
         model_(camera, seed, sensor),
         ray_caster_(ray_caster),
         optics_(std::move(ray_caster), surfaces, camera, model_.rays()),
-        registration_(model_.rays(), X_CD_, Lens(camera.intrinsics())) {}
+        registration_(model_.rays(), X_CD_, camera.view()) {}
 
   DepthReading read(const cv::Mat&, Stamp stamp, const std::function<Pose(Stamp)>& X_WC) override {
     TimeOfFlightCamera::PulsePoses X_WD;
@@ -68,7 +68,7 @@ class StereoDepthCamera final : public DepthCamera {
       : X_CD_(camera.X_CD()),
         model_(camera, seed, sensor),
         optics_(std::move(ray_caster), surfaces, camera),
-        registration_(model_.rays(), X_CD_, Lens(camera.intrinsics())) {}
+        registration_(model_.rays(), X_CD_, camera.view()) {}
 
   DepthReading read(const cv::Mat&, Stamp stamp, const std::function<Pose(Stamp)>& X_WC) override {
     DepthReading reading;
