@@ -130,7 +130,7 @@ TEST(Record, LeavesNothingHalfWritten) {
   // A limit on the size of files stands for a full disk.
   const auto full =
       test::waretwin("record " + agiprobot() + " --quiet --frames 2 --out " + in_quotes(drive), "ulimit -f 64; trap '' XFSZ;");
-  EXPECT_ONE_LINE(full, "rgb/");
+  EXPECT_ONE_LINE(full, "cannot write");
   // Stopped politely once it writes, it tidies up.
   const auto stopped = stopped_by("TERM", drive);
   EXPECT_EQ(stopped.exit_code, 2);
