@@ -36,6 +36,17 @@ add_library(waretwin_embree INTERFACE)
 add_library(waretwin::embree ALIAS waretwin_embree)
 target_link_libraries(waretwin_embree INTERFACE embree)
 
+# Bullet in double precision: Debian builds both, but its package configuration names the single one alone.
+add_library(waretwin_bullet INTERFACE)
+add_library(waretwin::bullet ALIAS waretwin_bullet)
+find_path(BULLET_INCLUDE_DIR btBulletDynamicsCommon.h PATH_SUFFIXES bullet REQUIRED)
+target_include_directories(waretwin_bullet SYSTEM INTERFACE ${BULLET_INCLUDE_DIR})
+target_compile_definitions(waretwin_bullet INTERFACE BT_USE_DOUBLE_PRECISION)
+foreach(part BulletDynamics BulletCollision LinearMath)
+  find_library(WARETWIN_${part} ${part}-float64 REQUIRED)
+  target_link_libraries(waretwin_bullet INTERFACE ${WARETWIN_${part}})
+endforeach()
+
 add_library(waretwin_tinygltf INTERFACE)
 add_library(waretwin::tinygltf ALIAS waretwin_tinygltf)
 # The package ships the compiled library; its header still wants nlohmann-json.

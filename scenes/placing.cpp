@@ -1,5 +1,6 @@
 #include "scenes/placing.h"
 
+#include "core/error.h"
 #include "scenes/true_cuboids.h"
 
 namespace waretwin {
@@ -36,6 +37,29 @@ SceneBuilder::Offsets SceneBuilder::share(const Model& model) {
   return offsets;
 }
 
+Instance SceneBuilder::shared_instance(const Model& model, std::size_t index, const Offsets& offsets) const {
+  Instance instance = model.content.instances[index];
+  instance.mesh += offsets.mesh;
+  return instance;
+}
+
+void SceneBuilder::add_mover(const Model& model, const std::string& name) {
+  for (const ModelNode& node : model.nodes) {
+    if (node.class_name && !node.class_name->empty()) {
+      throw Error(model.file, "node '" + node.name + "' is of class '" + *node.class_name + "'; what moves can be no true object");
+    }
+  }
+  if (model.content.triangle_count() == 0) throw Error(model.file, "has no triangles; expected something that can be seen and touched");
+  const Offsets offsets = share(model);
+  Mover mover;
+  mover.name = name;
+  for (std::size_t i = 0; i < model.content.instances.size(); ++i) {
+    mover.instances.push_back(static_cast<int>(scene_.instances.size()));
+    scene_.instances.push_back(shared_instance(model, i, offsets));
+  }
+  scene_.movers.push_back(std::move(mover));
+}
+
 void SceneBuilder::place(const Model& model, const Placing& placing) {
   const Offsets offsets = share(model);
   const ModelObjects objects = find_objects(model, rules_, placing.class_name, placing.name, matched_);
@@ -50,8 +74,7 @@ void SceneBuilder::place(const Model& model, const Placing& placing) {
   }
   for (std::size_t i = 0; i < model.content.instances.size(); ++i) {
     const std::size_t node = static_cast<std::size_t>(model.instance_nodes[i]);
-    Instance instance = model.content.instances[i];
-    instance.mesh += offsets.mesh;
+    Instance instance = shared_instance(model, i, offsets);
     instance.X_WM = (placing.X_WP * model.nodes[node].X_PN).cast<float>();
     instance.object = objects.of_node[node] < 0 ? -1 : first + objects.of_node[node];
     scene_.instances.push_back(std::move(instance));

@@ -26,6 +26,10 @@ class SceneBuilder {
   // placed. Throws Error when the model's true objects tilt or are empty.
   void place(const Model& model, const Placing& placing);
 
+  // Adds a model's instances as one body that moves (Scene::movers). Its lights stay out: they would not move. Throws Error when it has no
+  // triangles or when one of its nodes names a class: true objects stand still.
+  void add_mover(const Model& model, const std::string& name);
+
   // Nodes that each rule has matched so far.
   const std::vector<int>& matched() const { return matched_; }
 
@@ -36,6 +40,7 @@ class SceneBuilder {
     int texture = 0, material = 0, mesh = 0;
   };
   Offsets share(const Model& model);
+  Instance shared_instance(const Model& model, std::size_t index, const Offsets& offsets) const;
 
   std::vector<TruthRule> rules_;
   std::vector<int> matched_;

@@ -6,31 +6,15 @@
 
 #include "core/error.h"
 #include "scenes/gltf_loader.h"
-#include "scenes/gltf_uri.h"
+#include "scenes/model_file.h"
 #include "scenes/placing.h"
 
 namespace waretwin {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// Names stay inside the scenario's folder, so that the folder can be copied as it is.
-std::string problem_with(const fs::path& file, const fs::path& folder) {
-  const std::string quoted = "is '" + file.string() + "'; ";
-  if (file.is_absolute()) return quoted + "expected a path relative to the scenario's folder";
-  if (std::find(file.begin(), file.end(), "..") != file.end()) return quoted + "expected a file inside the scenario's folder";
-  std::error_code ignored;
-  if (!fs::exists(folder / file, ignored)) return quoted + "there is no such file in '" + folder.string() + "'";
-  if (!lies_within(folder / file, folder)) return quoted + "that link leaves the scenario's folder";
-  if (!fs::is_regular_file(folder / file, ignored)) return quoted + "expected a file";
-  return "";
-}
-
-}  // namespace
-
 void ModelPlacement::visit(Fields& f) {
-  f("file", file, "glTF file (.gltf or .glb), relative to the scenario's folder", {.required = true});
+  visit_model_file(f, file, folder);
   f("name", name, "for messages and objects; the file's stem where empty");
   f("x_m", x_m, "place of the file's origin in the world", {.min = -1e5, .max = 1e5});
   f("y_m", y_m, "place of the file's origin in the world", {.min = -1e5, .max = 1e5});
@@ -38,10 +22,6 @@ void ModelPlacement::visit(Fields& f) {
   f("yaw_deg", yaw_deg, "turned to the left about the file's origin", {.min = -360, .max = 360});
   f("scale", scale, "factor on all lengths of the file", {.min = 1e-4, .max = 1e4});
   f("class", class_name, "makes the whole model one object of this class");
-  const std::string extension = file.extension().string();
-  if (extension != ".glb" && extension != ".gltf") f.reject("file", "is '" + file.string() + "'; expected a .gltf or .glb file");
-  const std::string problem = folder.empty() ? "" : problem_with(file, folder);
-  if (!problem.empty()) f.reject("file", problem);
 }
 
 void TruthRule::visit(Fields& f) {
@@ -72,15 +52,6 @@ void LightingConfig::visit(Fields& f) {
   f("exposure", exposure, "factor on radiance before the tone curve", {.min = 1e-6, .max = 1e6});
 }
 
-void Waypoint::visit(Fields& f) {
-  f("x_m", x_m, "place in the world", {.min = -1e5, .max = 1e5, .required = true});
-  f("y_m", y_m, "place in the world", {.min = -1e5, .max = 1e5, .required = true});
-  f("heading_deg", heading_deg, "where the vehicle turns to after arrival; on the first waypoint the start heading",
-    {.min = -360, .max = 360});
-  f("wait_s", wait_s, "time to stand there", {.min = 0, .max = 3600});
-  f("reverse", reverse, "drives backwards to this place");
-}
-
 void RobotConfig::visit(Fields& f) {
   f("length_m", length_m, "length of the body", {.min = 0.05, .max = 20});
   f("width_m", width_m, "width of the body", {.min = 0.05, .max = 20});
@@ -89,6 +60,7 @@ void RobotConfig::visit(Fields& f) {
   f("acceleration_mps2", acceleration_mps2, "largest acceleration and braking", {.min = 0.01, .max = 20});
   f("turn_rate_deg_s", turn_rate_deg_s, "largest rate of turn", {.min = 0.5, .max = 720});
   f("turn_acceleration_deg_s2", turn_acceleration_deg_s2, "largest change of the rate of turn", {.min = 0.5, .max = 7200});
+  f.group("drive", drive, "how it rolls");
   f.list("route", route, "waypoints in the order in which the vehicle visits them", {.required = true});
   if (route.empty()) f.reject("route", "has no waypoint; expected at least one");
 }
@@ -101,6 +73,7 @@ void Scenario::visit(Fields& f) {
   f.list("truth", truth, "nodes that become objects by their names");
   f.group("lighting", lighting, "light in the hall");
   f.group("robot", robot, "the vehicle and its route", {.required = true});
+  f.group("motion", motion, "what moves in the hall");
   f.group("sensors", sensors, "what the vehicle carries");
   if (models.empty()) f.reject("models", "is empty; expected at least one model");
   if (sensors.cameras.empty() && sensors.lasers.empty()) f.reject("sensors", "has neither a camera nor a laser");
@@ -139,7 +112,9 @@ Scenario load_scenario(const fs::path& file, const std::vector<Setting>& setting
   read_config(file, visit);
   // A placement judges its file where the reader knows the line, so it must know the folder by then; how many placements there are is only
   // known after reading. Hence once more.
-  for (ModelPlacement& placement : scenario.models) placement.folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (ModelPlacement& placement : scenario.models) placement.folder = folder;
+  scenario.motion.set_folder(folder);
   read_config(file, visit);
   if (!settings.empty()) apply_settings(settings, visit);
   if (scenario.name.empty()) scenario.name = fs::absolute(file).parent_path().filename().string();
@@ -150,17 +125,26 @@ Scene build_scene(const Scenario& scenario) {
   check_lighting(scenario.lighting);
   SceneBuilder builder(scenario.truth);
   std::map<fs::path, Model> loaded;
-  for (const ModelPlacement& placement : scenario.models) {
-    const fs::path file = scenario.file.parent_path() / placement.file;
+  const auto model_of = [&](const fs::path& name) -> const Model& {
+    const fs::path file = scenario.file.parent_path() / name;
     auto found = loaded.find(file);
     if (found == loaded.end()) found = loaded.emplace(file, load_model(file)).first;
+    return found->second;
+  };
+  for (const ModelPlacement& placement : scenario.models) {
     Placing placing;
     placing.X_WP = make_upright_pose(placement.x_m, placement.y_m, placement.z_m, to_radians(placement.yaw_deg));
     placing.X_WP.scale(placement.scale);
     placing.class_name = placement.class_name;
     placing.name = placement.name.empty() ? placement.file.stem().string() : placement.name;
-    builder.place(found->second, placing);
+    builder.place(model_of(placement.file), placing);
   }
+  const auto add_movers = [&](const fs::path& file, const std::string& name, int count) {
+    for (int i = 0; i < count; ++i) builder.add_mover(model_of(file), name.empty() ? file.stem().string() : name);
+  };
+  for (const ItemStream& stream : scenario.motion.streams) add_movers(stream.body.file, stream.name, stream.most);
+  for (const ClutterConfig& thing : scenario.motion.clutter) add_movers(thing.body.file, thing.name, thing.count);
+  for (const WalkerConfig& walker : scenario.motion.walkers) add_movers(walker.file, walker.name, 1);
   for (std::size_t i = 0; i < scenario.truth.size(); ++i) {
     if (builder.matched()[i] > 0) continue;
     throw Error(scenario.file, "truth." + std::to_string(i) + ".pattern '" + scenario.truth[i].pattern + "' matches no node of any model");

@@ -11,7 +11,10 @@
 #include "core/config.h"
 #include "core/fields.h"
 #include "core/pose.h"
+#include "scenes/drive_config.h"
+#include "scenes/motion_config.h"
 #include "scenes/scene.h"
+#include "scenes/waypoint.h"
 #include "sensors/sensors_config.h"
 
 namespace waretwin {
@@ -23,7 +26,7 @@ struct ModelPlacement {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0;
   double yaw_deg = 0.0;
   double scale = 1.0;
-  std::filesystem::path folder;  // of the scenario: when set, visit() checks that the file exists and stays inside it; not a key
+  std::filesystem::path folder;  // of the scenario: when set, the file must exist (visit_model_file); not a key
   std::string class_name;  // key `class`: makes the whole model one object of this class; empty: the file's extras and `truth` rules decide
   void visit(Fields& f);
 };
@@ -55,22 +58,13 @@ struct LightingConfig {
   void visit(Fields& f);
 };
 
-// A place on the route. The robot turns towards it, drives there in a straight line, turns to `heading_deg` if given, and waits.
-struct Waypoint {
-  double x_m = 0.0, y_m = 0.0;
-  // World yaw of the vehicle's x axis after arrival; the first waypoint's is the start heading. None: as it arrived.
-  std::optional<double> heading_deg;
-  double wait_s = 0.0;
-  bool reverse = false;  // drives backwards to this waypoint
-  void visit(Fields& f);
-};
-
 struct RobotConfig {
   double length_m = 0.9, width_m = 0.6, height_m = 0.35;  // of the body, for clearance checks
   double speed_mps = 0.5;                                 // limits of the motion
   double acceleration_mps2 = 0.5;
   double turn_rate_deg_s = 45.0;
   double turn_acceleration_deg_s2 = 90.0;
+  DriveConfig drive;
   std::vector<Waypoint> route;
   void visit(Fields& f);
 };
@@ -84,6 +78,7 @@ struct Scenario {
   std::vector<TruthRule> truth;
   LightingConfig lighting;
   RobotConfig robot;
+  MotionConfig motion;
   SensorsConfig sensors;
   void visit(Fields& f);
 };
@@ -92,8 +87,8 @@ struct Scenario {
 // Throws Error with file, line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings = {});
 
-// Loads all models of a scenario into one scene in the world frame: instances, lights (files' and scenario's), and the true objects with
-// their cuboids. A truth node tilted more than 1 deg from upright is an Error.
+// Loads all models of a scenario into one scene in the world frame: instances, lights (files' and scenario's), the true objects with their
+// cuboids, and what moves (Scene::movers). A truth node tilted more than 1 deg from upright is an Error, a truth node in what moves too.
 Scene build_scene(const Scenario& scenario);
 
 }  // namespace waretwin

@@ -87,6 +87,13 @@ struct TrueObject {
   Cuboid cuboid;  // minimum-area upright box of its meshes, dx >= dy, frame "world"
 };
 
+// Instances that move together as one rigid body: a parcel, a person. They stand in the scene as if the body's frame G (the model's own,
+// z up) were the world's, so Instance::X_WM is X_GM until the simulation places them.
+struct Mover {
+  std::string name;
+  std::vector<int> instances;  // indices into Scene::instances
+};
+
 struct Scene {
   std::string name;
   std::vector<Texture> textures;
@@ -97,6 +104,7 @@ struct Scene {
   Eigen::Vector3f ambient = Eigen::Vector3f::Constant(0.0f);     // radiance from all directions that no surface blocks
   Eigen::Vector3f background = Eigen::Vector3f::Constant(0.0f);  // radiance of rays that hit nothing
   std::vector<TrueObject> objects;
+  std::vector<Mover> movers;       // of the scenario's motion: streams' items, then clutter, then walkers, each in its order
   std::vector<std::string> notes;  // what the loader read over or replaced, one line each
 
   std::size_t triangle_count() const;  // over all instances

@@ -32,16 +32,20 @@ class TimeOfFlightDepthCamera final : public DepthCamera {
       : X_CD_(camera.time_of_flight.X_CD(camera.field.tilt_down_deg)),
         exposure_s_(camera.time_of_flight.motion ? camera.time_of_flight.exposure_s : 0.0),
         model_(camera, seed, sensor),
+        ray_caster_(ray_caster),
         optics_(std::move(ray_caster), surfaces, camera, model_.rays()),
         registration_(model_.rays(), X_CD_, Lens(camera.intrinsics())) {}
 
   DepthReading read(const cv::Mat&, Stamp stamp, const std::function<Pose(Stamp)>& X_WC) override {
     TimeOfFlightCamera::PulsePoses X_WD;
-    for (int pulse = 0; pulse < kTimeOfFlightPulses; ++pulse) {
-      X_WD[static_cast<std::size_t>(pulse)] = X_WC(stamp + from_seconds(pulse_time(pulse) * exposure_s_)) * X_CD_;
+    TimeOfFlightCamera::PulseTimes times;
+    for (std::size_t pulse = 0; pulse < kTimeOfFlightPulses; ++pulse) {
+      const Stamp moment = stamp + from_seconds(pulse_time(static_cast<int>(pulse)) * exposure_s_);
+      X_WD[pulse] = X_WC(moment) * X_CD_;
+      times[pulse] = ray_caster_->time_of(moment);
     }
     DepthReading reading;
-    reading.native = model_.read(optics_.look(X_WD), stamp);
+    reading.native = model_.read(optics_.look(X_WD, times), stamp);
     reading.registered = registration_(reading.native);
     return reading;
   }
@@ -50,6 +54,7 @@ class TimeOfFlightDepthCamera final : public DepthCamera {
   Pose X_CD_;
   double exposure_s_;
   TimeOfFlightModel model_;
+  std::shared_ptr<const RayCaster> ray_caster_;
   TimeOfFlightCamera optics_;
   DepthRegistration registration_;
 };

@@ -25,7 +25,9 @@ LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, con
   const auto beams = static_cast<std::size_t>(config.beams);
   std::vector<Ray> rays(beams);
   for (std::size_t i = 0; i < beams; ++i) {
-    const Pose X_WL = X_WB(stamp + static_cast<Stamp>(i) * scan.beam_interval) * X_BL;
+    const Stamp moment = stamp + static_cast<Stamp>(i) * scan.beam_interval;
+    const Pose X_WL = X_WB(moment) * X_BL;
+    rays[i].time = ray_caster.time_of(moment);
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     rays[i].origin = X_WL.translation().cast<float>();
     rays[i].direction = (X_WL.linear() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)).cast<float>();

@@ -48,7 +48,8 @@ LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const
   const auto beams = static_cast<std::size_t>(config.beams);
   std::vector<Ray> rays(beams * kLooks);
   for (std::size_t i = 0; i < beams; ++i) {
-    const Pose X_WL = X_WB(stamp + static_cast<Stamp>(i) * scan.beam_interval) * X_BL;
+    const Stamp moment = stamp + static_cast<Stamp>(i) * scan.beam_interval;
+    const Pose X_WL = X_WB(moment) * X_BL;
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0.0), left(-std::sin(angle), std::cos(angle), 0.0);
     for (std::size_t k = 0; k < kLooks; ++k) {
@@ -58,6 +59,7 @@ LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const
         offset = kRing * (std::cos(turn) * left + std::sin(turn) * Eigen::Vector3d::UnitZ());
       }
       Ray& ray = rays[i * kLooks + k];
+      ray.time = ray_caster.time_of(moment);
       ray.origin = (X_WL * (0.5 * spot.diameter_m * offset)).cast<float>();
       ray.direction = (X_WL.linear() * (along + 0.5 * spot.divergence_rad * offset).normalized()).cast<float>();
       ray.far = static_cast<float>(config.range_max_m);

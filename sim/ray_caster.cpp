@@ -102,9 +102,9 @@ void commit_alone(RTCScene scene) {
   arena.execute([scene] { rtcCommitScene(scene); });
 }
 
-void set_rtc_transform(RTCGeometry geometry, const Eigen::Affine3f& X_WM) {
+void set_rtc_transform(RTCGeometry geometry, unsigned step, const Eigen::Affine3f& X_WM) {
   const Eigen::Matrix<float, 3, 4> columns = X_WM.affine();
-  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+  rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
 }
 
 RTCIntersectContext make_context(Coherence coherence) {
@@ -124,7 +124,7 @@ void set_lane(RTCRay8& packet, int i, const Ray& ray) {
   packet.dir_y[i] = ray.direction.y();
   packet.dir_z[i] = ray.direction.z();
   packet.tfar[i] = ray.far;
-  packet.time[i] = 0.0f;
+  packet.time[i] = ray.time;
   packet.mask[i] = 0xffffffffu;
   packet.id[i] = 0;
   packet.flags[i] = 0;
@@ -140,6 +140,7 @@ RTCRay single(const Ray& ray) {
   r.dir_y = ray.direction.y();
   r.dir_z = ray.direction.z();
   r.tfar = ray.far;
+  r.time = ray.time;
   r.mask = 0xffffffffu;
   return r;
 }
@@ -160,6 +161,13 @@ struct RayCaster::State {
   DeviceScene top;
   std::vector<RTCGeometry> instances;  // owned by `top`; null for instances of empty meshes
   std::vector<Placement> placements;   // as many as instances
+  std::vector<bool> present;           // as many as instances
+  struct Motion {
+    Eigen::Affine3f begin, end;
+  };
+  std::vector<Motion> motions;  // as many as instances
+  bool changed = true;          // since the last commit
+  Stamp shutter_begin = 0, shutter_end = 0;
 
   void add_mesh(std::size_t index);
   void add_instance(std::size_t index);
@@ -209,12 +217,14 @@ void RayCaster::State::add_instance(std::size_t index) {
   const Instance& instance = scene->instances[index];
   RTCScene mesh_scene = mesh_scenes[static_cast<std::size_t>(instance.mesh)].get();
   placements.emplace_back(instance.X_WM);
+  present.push_back(true);
+  motions.push_back({instance.X_WM, instance.X_WM});
   instances.push_back(nullptr);
   if (mesh_scene == nullptr) return;
   RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, mesh_scene);
   rtcSetGeometryTimeStepCount(geometry, 1);
-  set_rtc_transform(geometry, instance.X_WM);
+  set_rtc_transform(geometry, 0, instance.X_WM);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(top.get(), geometry, static_cast<unsigned>(index));
   rtcReleaseGeometry(geometry);
@@ -309,17 +319,59 @@ void RayCaster::occluded(std::span<const Ray> rays, std::span<std::uint8_t> bloc
   }
 }
 
-void RayCaster::set_transform(int instance, const Eigen::Affine3f& X_WM) {
+void RayCaster::set_transform(int instance, const Eigen::Affine3f& X_WM) { set_motion(instance, X_WM, X_WM); }
+
+void RayCaster::set_motion(int instance, const Eigen::Affine3f& X_WM_begin, const Eigen::Affine3f& X_WM_end) {
   const auto index = static_cast<std::size_t>(instance);
   WARETWIN_CHECK(index < state_->placements.size(), "an instance of the scene");
-  state_->placements[index] = Placement(X_WM);
+  State::Motion& motion = state_->motions[index];
+  if (motion.begin.matrix() == X_WM_begin.matrix() && motion.end.matrix() == X_WM_end.matrix()) return;
+  motion = {X_WM_begin, X_WM_end};
+  const bool moves = X_WM_begin.matrix() != X_WM_end.matrix();
+  Eigen::Affine3f middle = X_WM_begin;
+  if (moves) middle.matrix() = 0.5f * (X_WM_begin.matrix() + X_WM_end.matrix());
+  state_->placements[index] = Placement(middle);
   RTCGeometry geometry = state_->instances[index];
   if (geometry == nullptr) return;
-  set_rtc_transform(geometry, X_WM);
+  state_->changed = true;
+  rtcSetGeometryTimeStepCount(geometry, moves ? 2 : 1);
+  set_rtc_transform(geometry, 0, X_WM_begin);
+  if (moves) set_rtc_transform(geometry, 1, X_WM_end);
   rtcCommitGeometry(geometry);
 }
 
+void RayCaster::set_present(int instance, bool present) {
+  const auto index = static_cast<std::size_t>(instance);
+  WARETWIN_CHECK(index < state_->present.size(), "an instance of the scene");
+  if (state_->present[index] == present) return;
+  state_->present[index] = present;
+  RTCGeometry geometry = state_->instances[index];
+  if (geometry == nullptr) return;
+  state_->changed = true;
+  if (present) {
+    rtcEnableGeometry(geometry);
+  } else {
+    rtcDisableGeometry(geometry);
+  }
+  rtcCommitGeometry(geometry);
+}
+
+void RayCaster::set_shutter(Stamp begin, Stamp end) {
+  WARETWIN_CHECK(begin <= end, "a shutter ends after it begins");
+  state_->shutter_begin = begin;
+  state_->shutter_end = end;
+}
+
+float RayCaster::time_of(Stamp moment) const {
+  const Stamp begin = state_->shutter_begin, end = state_->shutter_end;
+  if (begin == end) return 0.5f;
+  const Stamp inside = std::clamp(moment, begin, end);
+  return static_cast<float>(static_cast<double>(inside - begin) / static_cast<double>(end - begin));
+}
+
 void RayCaster::commit() {
+  if (!state_->changed) return;
+  state_->changed = false;
   commit_alone(state_->top.get());
   require_no_error(state_->device.get());
 }

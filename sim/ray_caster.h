@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/fields.h"
+#include "core/stamp.h"
 #include "scenes/scene.h"
 
 namespace waretwin {
@@ -29,6 +30,7 @@ struct Ray {
   float near = 0.0f;
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
   float far = std::numeric_limits<float>::infinity();
+  float time = 0.5f;  // when it travels, as a share of the shutter: 0 = begin, 1 = end (RayCaster::time_of)
 
   Eigen::Vector3f at(float distance) const { return origin + distance * direction; }
 };
@@ -75,12 +77,25 @@ class RayCaster {
   // blocked[i] becomes 1 or 0. A ray whose far is below its near is not traced and counts as free.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Coherence coherence = Coherence::kIncoherent) const;
 
-  // Moves an instance; takes effect with commit(). Neither may run while rays are cast.
+  // What follows changes the hall; it takes effect with commit(), which costs nothing where nothing has changed. None of it may run while
+  // rays are cast.
+  // Puts an instance where it stands during the whole shutter.
   void set_transform(int instance, const Eigen::Affine3f& X_WM);
+  // Moves an instance evenly during the shutter: its matrix is interpolated linearly between the two, by Ray::time.
+  void set_motion(int instance, const Eigen::Affine3f& X_WM_begin, const Eigen::Affine3f& X_WM_end);
+  // Instances are there (the default) or not.
+  void set_present(int instance, bool present);
   void commit();
+
+  // The stretch of time that rays are cast in; Ray::time counts within it. Changes no instance by itself.
+  void set_shutter(Stamp begin, Stamp end);
+  // Ray::time of a moment; clamped to the shutter. 0.5 for an empty shutter, the default.
+  float time_of(Stamp moment) const;
+
+  // Where an instance stands in the middle of the shutter; normals and textures are looked up there.
   const Eigen::Affine3f& transform(int instance) const { return placement(instance).X_WM; }
   const Placement& placement(int instance) const;
-  // Bounds of all instances at their present places.
+  // Bounds of all present instances, over the whole shutter.
   Eigen::AlignedBox3f bounds() const;
 
  private:

@@ -15,13 +15,14 @@
 #include "sim/laser_spot.h"
 #include "sim/ray_caster.h"
 #include "sim/renderer.h"
-#include "sim/robot.h"
 
 namespace waretwin {
 
 namespace {
 
 constexpr const char* kOdometryName = "odometry";
+// Movers go evenly from this much before a frame's stamp to this much after it: longer than any exposure or readout.
+constexpr Stamp kFrameReach = 25'000'000;
 
 // Sensors measure at whole multiples of their period; one rounding each, so that rates like 15 Hz don't drift.
 Stamp stamp_of_turn(std::int64_t turn, double rate_hz) { return from_seconds(static_cast<double>(turn) / rate_hz); }
@@ -75,8 +76,8 @@ struct SimulatedStream::State {
 
   Scenario scenario;
   SimulationConfig config;
-  std::shared_ptr<const RayCaster> ray_caster;
-  RobotMotion motion;
+  std::shared_ptr<RayCaster> ray_caster;
+  HallMotion motion;
   Renderer renderer;
   std::map<std::string, std::unique_ptr<DepthCamera>> depth_cameras;
   std::map<std::string, LaserNoiseModel> laser_noise;
@@ -89,15 +90,15 @@ struct SimulatedStream::State {
 
   void describe();
   Pose X_WC(const std::string& camera, Stamp stamp) const { return motion.X_WB(stamp) * info.cameras.at(camera).X_BC; }
-  LaserScan scan(const std::string& name, Stamp stamp) const;
-  void render(RgbdFrame& frame);
+  LaserScan scan(const std::string& name, Stamp stamp);
+  void render(RgbdFrame& frame, const HallMoment& moment);
 };
 
 SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const Scene> a_scene, const SimulationConfig& a_config)
     : scenario(a_scenario),
       config(a_config),
       ray_caster(std::make_shared<RayCaster>(std::move(a_scene), RayCasterOptions{.isa = a_config.isa})),
-      motion(a_scenario.robot),
+      motion(a_scenario, *ray_caster),
       renderer(ray_caster,
                [&] {
                  RenderOptions options = a_config.render;
@@ -143,15 +144,19 @@ void SimulatedStream::State::describe() {
   }
 }
 
-LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) const {
-  LaserScan scan = spot_scan(*ray_caster, renderer.surfaces(), scenario.sensors.lasers.at(name), name, stamp,
-                             [this](Stamp at) { return motion.X_WB(at); });
+LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) {
+  const LaserConfig& laser = scenario.sensors.lasers.at(name);
+  const Stamp end = stamp + static_cast<Stamp>(laser.beams - 1) * laser.beam_interval();
+  motion.advance_to(end);
+  motion.moment(stamp, end).show(*ray_caster);
+  LaserScan scan = spot_scan(*ray_caster, renderer.surfaces(), laser, name, stamp, [this](Stamp at) { return motion.X_WB(at); });
   laser_noise.at(name).apply(scan);
   return scan;
 }
 
-void SimulatedStream::State::render(RgbdFrame& frame) {
+void SimulatedStream::State::render(RgbdFrame& frame, const HallMoment& moment) {
   const auto begin = std::chrono::steady_clock::now();
+  moment.show(*ray_caster);
   const CameraConfig& camera = scenario.sensors.cameras.at(frame.sensor);
   RenderRequest request;
   request.colour = config.colour;
@@ -195,9 +200,13 @@ std::optional<SensorEvent> SimulatedStream::next() {
   if (first == nullptr) return std::nullopt;
   const Stamp stamp = first->stamp();
   ++first->next;
-  if (first->kind == SensorKind::kOdometry) return s.odometry.advance(stamp, s.motion.X_WB(stamp));
+  if (first->kind == SensorKind::kOdometry) {
+    s.motion.advance_to(stamp);
+    return s.odometry.advance(stamp, s.motion.wheels_X_WB(stamp));
+  }
   if (first->kind == SensorKind::kLaser) return s.scan(first->name, stamp);
   ++s.frames_sent;
+  s.motion.advance_to(stamp + kFrameReach);
   s.truth = {};
   s.truth.stamp = stamp;
   s.truth.sensor = first->name;
@@ -206,11 +215,14 @@ std::optional<SensorEvent> SimulatedStream::next() {
   RgbdFrame frame;
   frame.stamp = stamp;
   frame.sensor = first->name;
-  frame.load = [state = state_](RgbdFrame& to_load) { state->render(to_load); };
+  frame.load = [state = state_, moment = s.motion.moment(stamp - kFrameReach, stamp + kFrameReach)](RgbdFrame& to_load) {
+    state->render(to_load, moment);
+  };
   return frame;
 }
 
 Pose SimulatedStream::true_X_WB(Stamp stamp) const { return state_->motion.X_WB(stamp); }
+MotionReport SimulatedStream::motion() const { return state_->motion.report(); }
 const FrameTruth& SimulatedStream::last_frame_truth() const { return state_->truth; }
 const Scene& SimulatedStream::scene() const { return state_->ray_caster->scene(); }
 std::shared_ptr<const RayCaster> SimulatedStream::ray_caster() const { return state_->ray_caster; }

@@ -10,6 +10,7 @@
 #include "scenes/scenario.h"
 #include "scenes/scene.h"
 #include "sensors/sensor_stream.h"
+#include "sim/motion/hall_motion.h"
 #include "sim/render_options.h"
 
 namespace waretwin {
@@ -38,7 +39,8 @@ struct FrameTruth {
 // Events come in order of stamps (a scan's is that of its first beam), equal stamps as odometry, laser, camera, then by sensor name. The
 // drive starts at stamp 0 and every sensor measures from then until the robot has finished its route; a scan that would end after it is
 // left out. Pictures are rendered by RgbdFrame::load only, from the frame's stamp and the seed alone, so that the frames a mapper drops
-// cost nothing and change nothing. A frame's load stays usable for as long as the frame lives, also after the stream has gone.
+// cost nothing and change nothing. A frame's load stays usable for as long as the frame lives, also after the stream has gone: it keeps
+// where everything was.
 class SimulatedStream final : public SensorStream {
  public:
   // Throws Error for a route without waypoints, a scene without triangles, or a CPU without the instruction set.
@@ -50,8 +52,10 @@ class SimulatedStream final : public SensorStream {
   const StreamInfo& info() const override;
   std::optional<SensorEvent> next() override;
 
-  // The vehicle at any time, exact; before the start and after the end it stands.
+  // The vehicle at any time up to the newest event, exact; before the start it stands.
   Pose true_X_WB(Stamp stamp) const;
+  // What has moved and what the vehicle has touched so far.
+  MotionReport motion() const;
   // Poses of the newest frame and, once it is loaded, its images; a frame that was not loaded has empty images.
   const FrameTruth& last_frame_truth() const;
   const Scene& scene() const;

@@ -89,6 +89,7 @@ struct TimeOfFlightCamera::State {
   float phase_per_metre;  // 4 pi f / c
 
   // Of the picture being made.
+  PulseTimes times{};
   std::vector<Look> looks;
   std::vector<Cell> cells, smooth_cells;
   cv::Mat bends;
@@ -142,6 +143,7 @@ void TimeOfFlightCamera::State::look_at_centres(const Pose& X_WD) {
             const Eigen::Vector3f direction(d[0], d[1], d[2]);
             looks[p].length = direction.norm();
             Ray ray;
+            ray.time = times[kMiddle];
             ray.origin = origin;
             ray.direction = R * (direction / looks[p].length);
             batch.push_back(ray);
@@ -243,6 +245,7 @@ void TimeOfFlightCamera::State::sum_pulses(const PulsePoses& X_WD, TimeOfFlightS
             direction += static_cast<float>(kNinths[k].x) / 3.0f * right + static_cast<float>(kNinths[k].y) / 3.0f * down;
           }
           Ray ray;
+          ray.time = config.motion ? times[k] : times[kMiddle];
           ray.origin = origins[k];
           ray.direction = rotations[k] * direction.normalized();
           batch.push_back(ray);
@@ -316,6 +319,7 @@ void TimeOfFlightCamera::State::find_indirect(const Pose& X_WD) {
         of_cell.emplace_back(&cell, &look);
         for (int i = 0; i < kBounces; ++i) {
           Ray ray;
+          ray.time = times[kMiddle];
           ray.origin = origin + cell.position + 1e-3f * cell.normal;
           ray.direction = bounce_direction(cell.normal, cx, cy, i);
           ray.far = kBounceReach;
@@ -342,6 +346,7 @@ void TimeOfFlightCamera::State::find_indirect(const Pose& X_WD) {
         const float longer = 0.5f * (other_range + hits[i].distance - look->range);
         made.push_back({cell, std::polar(std::min(ratio, kMostIndirect / kBounces), phase_per_metre * std::max(longer, 0.0f))});
         Ray ray;
+        ray.time = times[kMiddle];
         ray.origin = other.position + 1e-3f * other.face_normal;
         ray.direction = origin - ray.origin;
         ray.far = 1.0f;
@@ -456,7 +461,14 @@ TimeOfFlightCamera::~TimeOfFlightCamera() = default;
 TimeOfFlightCamera::TimeOfFlightCamera(TimeOfFlightCamera&&) noexcept = default;
 
 TimeOfFlightSignal TimeOfFlightCamera::look(const PulsePoses& X_WD) {
+  PulseTimes middle;
+  middle.fill(0.5f);
+  return look(X_WD, middle);
+}
+
+TimeOfFlightSignal TimeOfFlightCamera::look(const PulsePoses& X_WD, const PulseTimes& times) {
   State& s = *state_;
+  s.times = times;
   TimeOfFlightSignal signal;
   for (cv::Mat* image : {&signal.range, &signal.signal, &signal.coherence, &signal.indirect}) image->create(s.rays.size(), CV_32FC1);
   signal.indirect.setTo(0);

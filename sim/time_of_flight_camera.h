@@ -26,14 +26,18 @@ class TimeOfFlightCamera {
  public:
   using PulsePoses = std::array<Pose, kTimeOfFlightPulses>;  // of the depth camera in the world; the middle one is the frame's
 
+  using PulseTimes = std::array<float, kTimeOfFlightPulses>;  // Ray::time of each pulse
+
   // `rays`: TimeOfFlightModel::rays. `surfaces` outlives the camera.
   TimeOfFlightCamera(std::shared_ptr<const RayCaster> ray_caster, const Surfaces& surfaces, const CameraConfig& camera,
                      const cv::Mat& rays);
   ~TimeOfFlightCamera();
   TimeOfFlightCamera(TimeOfFlightCamera&&) noexcept;
 
-  // One picture's light. Keeps its buffers: one picture at a time. The result depends on the poses and the hall alone.
-  TimeOfFlightSignal look(const PulsePoses& X_WD);
+  // One picture's light. Keeps its buffers: one picture at a time. The result depends on the poses, the times and the hall alone. What
+  // moves is seen at the middle pulse, its edges at each pulse.
+  TimeOfFlightSignal look(const PulsePoses& X_WD, const PulseTimes& times);
+  TimeOfFlightSignal look(const PulsePoses& X_WD);  // all in the middle of the shutter
 
  private:
   struct State;

@@ -285,6 +285,39 @@ TEST(RayCaster, MovesInstances) {
   EXPECT_NEAR(caster.bounds().max().x(), 4, 1e-5);
 }
 
+TEST(RayCaster, InstancesMoveEvenlyDuringTheShutter) {
+  Scene scene;
+  const int mesh = add_mesh(scene, fixtures::unit_box(), add_material(scene, {1, 1, 1}));
+  const int box = add_instance(scene, mesh, placed({1, -0.5f, -0.5f}, {1, 1, 1}));
+  add_instance(scene, mesh, placed({8, -5, -5}, {1, 10, 10}));
+  RayCaster caster(std::make_shared<const Scene>(std::move(scene)));
+  EXPECT_EQ(caster.time_of(5), 0.5f) << "an empty shutter";
+  caster.set_shutter(1000, 3000);
+  caster.set_motion(box, placed({1, -0.5f, -0.5f}, {1, 1, 1}), placed({3, -0.5f, -0.5f}, {1, 1, 1}));
+  caster.commit();
+  std::vector<Ray> rays;
+  for (const Stamp moment : {0, 1000, 1500, 2000, 2750, 3000, 9000}) {
+    Ray ray;
+    ray.time = caster.time_of(moment);
+    const float share = std::clamp(static_cast<float>(moment - 1000) / 2000.0f, 0.0f, 1.0f);
+    EXPECT_EQ(ray.time, share);
+    EXPECT_NEAR(caster.cast(ray).distance, 1.0f + 2.0f * share, 1e-5f);
+    rays.push_back(ray);
+  }
+  std::vector<Hit> hits(rays.size());
+  caster.cast(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_NEAR(hits[i].distance, 1.0f + 2.0f * rays[i].time, 1e-5f);
+  EXPECT_NEAR(caster.transform(box).translation().x(), 2.0f, 1e-6f) << "the middle of the shutter";
+
+  caster.set_present(box, false);
+  caster.commit();
+  EXPECT_NEAR(caster.cast(Ray{}).distance, 8.0f, 1e-5f);
+  caster.set_present(box, true);
+  caster.set_transform(box, placed({5, -0.5f, -0.5f}, {1, 1, 1}));
+  caster.commit();
+  EXPECT_NEAR(caster.cast(rays.back()).distance, 5.0f, 1e-5f) << "no motion is left over";
+}
+
 TEST(RayCaster, RejectsWhatItCannotUse) {
   EXPECT_THROW(RayCaster(std::make_shared<const Scene>()), Error);
   const auto scene = std::make_shared<const Scene>(fixtures::room(0, 1, 0, 1, 1));
