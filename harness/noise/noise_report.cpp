@@ -17,6 +17,8 @@ using Json = nlohmann::ordered_json;
 // Beyond this, neighbours are not measured independently.
 constexpr double kCorrelated = 0.1;
 constexpr int kNoiseSchema = 1;
+// Share of missing pixels below which depth counts as filling the picture.
+constexpr double kWholePicture = 0.25;
 
 template <class... Values>
 std::string line(const char* pattern, Values... values) {
@@ -109,6 +111,10 @@ std::string noise_yaml(const NoiseSurvey& survey, int indent) {
     text += space + "depth_model: time_of_flight\n" + space + "time_of_flight: {noise_m: " + number(survey.time_of_flight->noise_m.value) +
             ", background: " + number(survey.config.background) + ", illumination: " + number(survey.config.illumination) + "}\n";
   } else if (survey.gaussian) {
+    // Depth all over the picture is no illuminated outline, as that of the presets is.
+    if (survey.missing_share < kWholePicture) {
+      text += space + "field: {shape: rectangle, horizontal_deg: 179, vertical_deg: 179, tilt_down_deg: 0}\n";
+    }
     text += space + "depth_model: gaussian\n" + space + "noise: {sigma_base_m: " + number(survey.gaussian->base_m.value) +
             ", sigma_per_m2: " + number(survey.gaussian->growth_per_m.value) + ", dropout_share: " + number(survey.planar_missing_share) +
             "}\n";

@@ -175,6 +175,7 @@ TEST(NoiseSurvey, GivesKeysThatAScenarioTakes) {
   EXPECT_NEAR(camera.noise.sigma_per_m2, survey.gaussian->growth_per_m.value, 1e-6);
   EXPECT_EQ(camera.width, 640);
   EXPECT_NEAR(camera.horizontal_fov_deg, 62.7, 0.01);
+  EXPECT_EQ(camera.field.shape, survey.missing_share < 0.25 ? "rectangle" : "hexagon");
   survey.time_of_flight->misfit = 0.5 * survey.gaussian->misfit;
   read_config_text(noise_yaml(survey, 2), "noise.yaml", [&](Fields& f) { camera.visit(f); });
   EXPECT_EQ(camera.depth_model, "time_of_flight");
