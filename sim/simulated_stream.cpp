@@ -131,6 +131,10 @@ void SimulatedStream::State::describe() {
   info.source = scenario.name;
   for (const auto& [name, camera] : scenario.sensors.cameras) {
     info.cameras[name] = {camera.view().intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
+    // True depth comes in the colour view alone.
+    if (camera.depth_model != "gaussian" && !config.truth_depth) {
+      info.cameras[name].native = DepthCameraView{camera.depth_lens(), camera.X_CD()};
+    }
   }
   for (const auto& [name, laser] : scenario.sensors.lasers) info.lasers[name] = {laser.mount.X_BL(), laser.rate_hz};
   info.has_odometry = scenario.sensors.odometry.enabled;

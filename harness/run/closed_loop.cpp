@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/digest.h"
+#include "harness/truth/true_list.h"
 #include "harness/truth/truth_associator.h"
 #include "harness/truth/truth_localiser.h"
 #include "mapper/integrate/tsdf_volume.h"
@@ -80,14 +81,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
 
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
-  for (const TrueObject& object : scene->objects) {
-    ListedObject truth;
-    truth.id = object.id;
-    truth.class_name = object.class_name;
-    truth.cuboid = object.cuboid;
-    truth.visible_fraction = coverage ? coverage->fraction(object.id) : 0.0;
-    result.truth.push_back(truth);
-  }
+  result.truth = true_list(*scene, coverage.get());
   result.trajectory = stamped(map.trajectory);
   for (const StampedPose& point : result.trajectory) result.true_trajectory.push_back({point.stamp, stream.true_X_WB(point.stamp)});
 
