@@ -102,6 +102,22 @@ void write_file_by(const fs::path& path, const std::function<void(const fs::path
   rename_into_place(temporary, path);
 }
 
+GrowingFile::GrowingFile(const fs::path& path) : path_(path), out_(path, std::ios::binary | std::ios::trunc) {
+  if (!out_) throw Error(path_, std::string("cannot write: ") + std::strerror(errno));
+}
+
+void GrowingFile::append(std::string_view bytes) {
+  errno = 0;
+  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!out_) throw Error(path_, std::string("cannot write: ") + std::strerror(errno != 0 ? errno : EIO));
+}
+
+void GrowingFile::close() {
+  errno = 0;
+  out_.close();
+  if (!out_) throw Error(path_, std::string("cannot write: ") + std::strerror(errno != 0 ? errno : EIO));
+}
+
 void make_folder(const fs::path& path) {
   std::error_code failure;
   fs::create_directories(path, failure);

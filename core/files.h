@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -22,5 +23,20 @@ void write_file_by(const std::filesystem::path& path, const std::function<void(c
 
 // Makes a folder and its parents. Throws Error when that fails or a file is in the way.
 void make_folder(const std::filesystem::path& path);
+
+// A text that grows while it is written, for what is too long to be held. Not atomic: for files of a StagedFolder.
+class GrowingFile {
+ public:
+  // Throws Error when the file cannot be made.
+  explicit GrowingFile(const std::filesystem::path& path);
+  // Throws Error when the disk is full; part of the bytes may wait in memory until close().
+  void append(std::string_view bytes);
+  // Throws Error when not everything reached the file. Nothing may be appended after it.
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream out_;
+};
 
 }  // namespace waretwin

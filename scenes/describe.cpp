@@ -47,6 +47,7 @@ void add_material(std::string& text, const Scene& scene, const Material& m) {
   if (m.alpha_mask) uses += ", alpha mask";
   if (m.double_sided) uses += ", double-sided";
   if (!std::isnan(m.reflectivity_850nm)) uses += ", reflectivity at 850 nm " + std::to_string(m.reflectivity_850nm).substr(0, 4);
+  if (m.retroreflection > 0.0f) uses += ", retroreflective " + std::to_string(static_cast<int>(std::lround(m.retroreflection)));
   add_line(text, "  %.80s: rgba %.2f %.2f %.2f %.2f, metallic %.2f, roughness %.2f%.600s", shown(m.name),
            static_cast<double>(m.base_colour[0]), static_cast<double>(m.base_colour[1]), static_cast<double>(m.base_colour[2]),
            static_cast<double>(m.base_colour[3]), static_cast<double>(m.metallic), static_cast<double>(m.roughness), uses.c_str());
@@ -75,6 +76,26 @@ void add_object(std::string& text, const TrueObject& object) {
   add_line(text, "  %d %.40s '%.80s': centre (%.3f, %.3f, %.3f) m, yaw %.1f deg, size %.3f x %.3f x %.3f m", object.id,
            object.class_name.c_str(), object.name.c_str(), c.centre.x(), c.centre.y(), c.centre.z(), to_degrees(c.yaw), c.size.x(),
            c.size.y(), c.size.z());
+}
+
+void add_motion(std::string& text, const MotionConfig& motion) {
+  add_list(text, "belts", motion.belts, [&](const BeltConfig& belt) {
+    const std::string way = belt.curve ? "about its pivot" : "towards " + std::to_string(std::lround(belt.heading_deg)) + " deg";
+    add_line(text, "  %.80s: %.3g m/s %s, %zu changes", belt.object.c_str(), belt.speed_mps, way.c_str(), belt.changes.size());
+  });
+  add_list(text, "streams", motion.streams, [&](const ItemStream& stream) {
+    add_line(text, "  %.80s: %.200s of %.3g kg every %.4g s from %.4g s on, at most %d, at (%.2f, %.2f, %.2f) m", shown(stream.name),
+             stream.body.file.c_str(), stream.body.mass_kg, stream.every_s, stream.first_s, stream.most, stream.x_m, stream.y_m,
+             stream.z_m);
+  });
+  if (!motion.sinks.empty()) add_line(text, "sinks: %zu", motion.sinks.size());
+  add_list(text, "clutter", motion.clutter, [&](const ClutterConfig& thing) {
+    add_line(text, "  %d x %.80s: %.200s at (%.2f, %.2f) m", thing.count, shown(thing.name), thing.body.file.c_str(), thing.x_m, thing.y_m);
+  });
+  add_list(text, "walkers", motion.walkers, [&](const WalkerConfig& walker) {
+    add_line(text, "  %.80s: %.200s, %zu places, at most %.3g m/s", shown(walker.name), walker.file.c_str(), walker.path.size(),
+             walker.speed_mps);
+  });
 }
 
 }  // namespace
@@ -123,6 +144,9 @@ std::string describe_scenario(const Scenario& scenario) {
   }
   add_line(text, "route: %zu waypoints, %.1f m; robot %.2f x %.2f x %.2f m, at most %.2f m/s", scenario.robot.route.size(), length,
            scenario.robot.length_m, scenario.robot.width_m, scenario.robot.height_m, scenario.robot.speed_mps);
+  const DriveConfig& drive = scenario.robot.drive;
+  add_line(text, "drive: %.20s, %.4g kg and %.4g kg of load", drive.model.c_str(), drive.mass_kg, drive.payload_kg);
+  add_motion(text, scenario.motion);
   for (const auto& [name, camera] : scenario.sensors.cameras) {
     add_line(text, "camera %.80s: %.40s, %d x %d at %.4g Hz, %.2f m high, %.1f deg down", name.c_str(), camera.preset.c_str(), camera.width,
              camera.height, camera.rate_hz, camera.mount.z_m, camera.mount.pitch_deg);

@@ -7,8 +7,9 @@
 // Scene::notes; an extension that a file requires and that is not supported is an Error. So is anything damaged: each Error names file and
 // element. Limits stand in gltf_document.h.
 //
-// Ours in extras: materials {"waretwin": {"reflectivity_850nm": 0.6}}, lights and their nodes {"waretwin": {"radius_m": 0.15}}, nodes
-// {"waretwin": {"class": "conveyor", "name": "A1"}}.
+// Ours in extras: materials {"waretwin": {"reflectivity_850nm": 0.6}} and {"waretwin": {"retroreflective": true}} (an engineer-grade sheet,
+// as 220; or a number: how many times as much light goes back as from a white diffuse surface), lights and their nodes
+// {"waretwin": {"radius_m": 0.15}}, nodes {"waretwin": {"class": "conveyor", "name": "A1"}}.
 #pragma once
 
 #include <filesystem>

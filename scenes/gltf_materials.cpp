@@ -148,7 +148,19 @@ class MaterialLoader {
     if (const tinygltf::Value* value = waretwin_extra(source.extras, "reflectivity_850nm")) {
       result.reflectivity_850nm = static_cast<float>(number_in(document_, *value, element, "reflectivity_850nm", 0.0, 1.0));
     }
+    if (const tinygltf::Value* value = waretwin_extra(source.extras, "retroreflective")) {
+      result.retroreflection = retroreflection(*value, element);
+    }
     return result;
+  }
+
+  float retroreflection(const tinygltf::Value& value, const std::string& element) const {
+    // ASTM D4956, type I (engineer grade), white, straight ahead: 70 cd / (lx m2), where a white diffuse surface has 1 / pi.
+    constexpr float kSheet = 220.0f;
+    if (value.IsBool()) return value.Get<bool>() ? kSheet : 0.0f;
+    const double number = value.IsNumber() ? value.GetNumberAsDouble() : std::nan("");
+    if (!(number >= 0.0 && number <= 1e5)) document_.fail(element, "retroreflective must be true, false or a number from 0 to 100000");
+    return static_cast<float>(number);
   }
 
   void set_alpha(const tinygltf::Material& source, const std::string& element, Material& result) {

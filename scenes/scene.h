@@ -45,6 +45,8 @@ struct Material {
   bool double_sided = false;
   // Reflectivity at 850 nm in [0, 1] from extras; NaN = not given (a guess from colour and metalness is made by the depth camera).
   float reflectivity_850nm = std::numeric_limits<float>::quiet_NaN();
+  // Light that goes back to where it came from, straight ahead, over what a white diffuse surface sends there; from extras, 0 = none.
+  float retroreflection = 0.0f;
 };
 
 // One glTF primitive: triangles with one material, in its mesh's own frame M.

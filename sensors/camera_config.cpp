@@ -25,7 +25,7 @@ void DepthNoise::visit(Fields& f) {
 namespace {
 
 const std::vector<std::string>& presets() {
-  static const std::vector<std::string> names = {"azure_kinect", "femto_bolt", "azure_kinect_gaussian", "ideal"};
+  static const std::vector<std::string> names = {"azure_kinect", "femto_bolt", "azure_kinect_gaussian", "realsense_d435", "ideal"};
   return names;
 }
 
@@ -61,7 +61,22 @@ CameraConfig CameraConfig::make(const std::string& preset) {
   CameraConfig camera;
   camera.preset = preset;
   if (preset == "azure_kinect" || preset == "femto_bolt") return camera;
+  if (preset == "realsense_d435") {
+    // Data sheet (Intel RealSense D400 series, document 337029): depth 87 x 58 deg, to about 10 m (at its best up to 3 m); colour 69 x 42
+    // deg, here 1280 x 720 of its 1920 x 1080 pixels. Depth begins at 0.28 m with 1280 x 720 pixels and in proportion to them with fewer.
+    // It takes 6 to 90 frames a second; 15 are what the other cameras do.
+    camera.horizontal_fov_deg = 69.4;
+    camera.vertical_fov_deg = 42.5;
+    camera.depth_model = "stereo";
+    camera.depth_min_m = 0.19;
+    camera.depth_max_m = 10.0;
+    camera.field = {.horizontal_deg = 87.0, .vertical_deg = 58.0, .tilt_down_deg = 0.0, .shape = "rectangle"};
+    // Its colour pictures leave the device undistorted.
+    camera.colour.lens_distortion = false;
+    return camera;
+  }
   camera.depth_model = "gaussian";
+  camera.colour.set_ideal();
   if (preset == "azure_kinect_gaussian") return camera;
   if (preset == "ideal") {
     camera.field = {.horizontal_deg = 179.0, .vertical_deg = 179.0, .tilt_down_deg = 0.0, .shape = "rectangle"};
@@ -70,7 +85,8 @@ CameraConfig CameraConfig::make(const std::string& preset) {
     camera.depth_max_m = 20.0;
     return camera;
   }
-  throw Error("camera preset '" + preset + "' is not known; expected azure_kinect, femto_bolt, azure_kinect_gaussian or ideal");
+  throw Error("camera preset '" + preset +
+              "' is not known; expected azure_kinect, femto_bolt, azure_kinect_gaussian, realsense_d435 or ideal");
 }
 
 void CameraConfig::set_depth_mode(const std::string& name) {
@@ -98,7 +114,34 @@ Intrinsics CameraConfig::intrinsics() const {
   return Intrinsics::from_field_of_view(width, height, to_radians(horizontal_fov_deg), to_radians(vertical_fov_deg));
 }
 
+Lens CameraConfig::colour_lens() const {
+  const Intrinsics pinhole = intrinsics();
+  if (!colour.lens_distortion || colour.lens.is_none()) return Lens(pinhole);
+  const Lens bent(pinhole, colour.lens);
+  double reach = 0.0;  // of the view's border, over the image's
+  const auto reach_out = [&](int u, int v) {
+    const auto pixel = bent.project(pinhole.ray(u, v));
+    if (!pixel) throw Error("colour.lens folds over within the image; expected a distortion that grows from the middle to the corners");
+    reach = std::max({reach, std::abs(pixel->x() - pinhole.cx) / pinhole.cx, std::abs(pixel->y() - pinhole.cy) / pinhole.cy});
+  };
+  for (int u = 0; u < width; ++u) {
+    reach_out(u, 0);
+    reach_out(u, height - 1);
+  }
+  for (int v = 0; v < height; ++v) {
+    reach_out(0, v);
+    reach_out(width - 1, v);
+  }
+  return Lens(Intrinsics::checked(width, height, pinhole.fx / reach, pinhole.fy / reach, pinhole.cx, pinhole.cy), colour.lens);
+}
+
+Lens CameraConfig::view() const { return colour.rectify ? Lens(intrinsics()) : colour_lens(); }
+
 Lens CameraConfig::depth_lens() const {
+  if (depth_model == "stereo") {
+    return Lens(Intrinsics::checked(stereo.width, stereo.height, stereo.focal_px, stereo.focal_px, 0.5 * (stereo.width - 1),
+                                    0.5 * (stereo.height - 1)));
+  }
   const TimeOfFlightConfig& t = time_of_flight;
   double focal = t.focal_px;
   if (!t.lens_distortion) {
@@ -107,6 +150,14 @@ Lens CameraConfig::depth_lens() const {
   }
   return Lens(Intrinsics::checked(t.width, t.height, focal, focal, 0.5 * (t.width - 1), 0.5 * (t.height - 1)),
               t.lens_distortion ? t.lens : Distortion{});
+}
+
+Pose CameraConfig::X_CD() const {
+  Pose X = Pose::Identity();
+  // Turning about x by a negative angle takes the optical axis towards +y, which points down.
+  X.linear() = Eigen::AngleAxisd(-to_radians(field.tilt_down_deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
+  X.translation() = Eigen::Vector3d(depth_model == "stereo" ? stereo.offset_right_m : time_of_flight.offset_right_m, 0.0, 0.0);
+  return X;
 }
 
 void CameraConfig::visit(Fields& f) {
@@ -124,14 +175,19 @@ void CameraConfig::visit(Fields& f) {
   f("rate_hz", rate_hz, "frames a second", {.min = 0.01, .max = 1000});
   const std::string mode_before = depth_mode;
   f("depth_mode", depth_mode, "mode of the Azure Kinect: resolution, field, range and light", {.choices = depth_mode_names()});
-  if (depth_mode != mode_before) set_depth_mode(depth_mode);
-  f("depth_model", depth_model, "how depth comes about", {.choices = {"time_of_flight", "gaussian"}});
+  if (depth_mode != mode_before) {
+    if (depth_model == "stereo") f.reject("depth_mode", "is of the Azure Kinect; " + preset + " has none");
+    set_depth_mode(depth_mode);
+  }
+  f("depth_model", depth_model, "how depth comes about", {.choices = {"time_of_flight", "stereo", "gaussian"}});
   f("depth_min_m", depth_min_m, "no depth nearer than this", {.min = 0.001, .max = 100});
   f("depth_max_m", depth_max_m, "no depth beyond this", {.min = 0.001, .max = 65.535});
   if (depth_max_m <= depth_min_m) f.reject("depth_max_m", "must be greater than depth_min_m");
   f.group("field", field, "directions in which the depth camera measures");
   f.group("time_of_flight", time_of_flight, "depth_model time_of_flight: lens, light and errors");
+  f.group("stereo", stereo, "depth_model stereo: cameras, projector and errors");
   f.group("noise", noise, "depth_model gaussian: error of the depth reading");
+  f.group("colour", colour, "lens, shutter and errors of the colour pictures");
   f.group("mount", mount, "place on the vehicle");
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/parallel.h"
 #include "core/pose.h"
 
 namespace waretwin {
@@ -25,13 +26,31 @@ bool in_depth_field(const DepthField& field, const Eigen::Vector3d& ray_C) {
 }
 
 cv::Mat depth_field_mask(const CameraConfig& camera) {
-  const Intrinsics intrinsics = camera.intrinsics();
-  cv::Mat mask(intrinsics.height, intrinsics.width, CV_8UC1);
+  const Lens view = camera.view();
+  cv::Mat mask(camera.height, camera.width, CV_8UC1);
   for (int v = 0; v < mask.rows; ++v) {
     auto* row = mask.ptr<std::uint8_t>(v);
-    for (int u = 0; u < mask.cols; ++u) row[u] = in_depth_field(camera.field, intrinsics.ray(u, v)) ? 255 : 0;
+    for (int u = 0; u < mask.cols; ++u) {
+      const auto ray = view.ray(u, v);
+      row[u] = ray && in_depth_field(camera.field, *ray) ? 255 : 0;
+    }
   }
   return mask;
+}
+
+cv::Mat depth_rays(const CameraConfig& camera) {
+  const Lens lens = camera.depth_lens();
+  cv::Mat rays(lens.intrinsics().height, lens.intrinsics().width, CV_32FC3, cv::Scalar::all(0));
+  parallel_for(static_cast<std::size_t>(rays.rows), 8, [&](std::size_t begin, std::size_t end) {
+    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      for (int u = 0; u < rays.cols; ++u) {
+        const auto ray = lens.ray(u, v);
+        if (!ray || !inside_outline(camera.field, ray->x(), ray->y())) continue;
+        rays.at<cv::Vec3f>(v, u) = {static_cast<float>(ray->x()), static_cast<float>(ray->y()), 1.0f};
+      }
+    }
+  });
+  return rays;
 }
 
 }  // namespace waretwin

@@ -19,4 +19,8 @@ bool in_depth_field(const DepthField& field, const Eigen::Vector3d& ray_C);
 // CV_8UC1 of the colour image's size: 255 in the depth field, 0 outside.
 cv::Mat depth_field_mask(const CameraConfig& camera);
 
+// What a camera with a depth lens of its own measures along: CV_32FC3 of the depth image's size, each pixel's ray scaled to z = 1; (0, 0,
+// 0) outside the field.
+cv::Mat depth_rays(const CameraConfig& camera);
+
 }  // namespace waretwin

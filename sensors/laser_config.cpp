@@ -1,5 +1,7 @@
 #include "sensors/laser_config.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -10,7 +12,14 @@ namespace waretwin {
 void LaserNoise::visit(Fields& f) {
   f("enabled", enabled, "false switches the range error off");
   f("sigma_m", sigma_m, "standard deviation of a range", {.min = 0, .max = 1});
+  f("sigma_far_m", sigma_far_m, "standard deviation at the farthest range", {.min = 0, .max = 1});
+  f("grows_from_m", grows_from_m, "up to here the standard deviation is sigma_m, then it grows evenly", {.min = 0, .max = 1000});
   f("bias_max_m", bias_max_m, "bound of the systematic part, drawn once per run", {.min = 0, .max = 1});
+}
+
+double LaserNoise::deviation(double range, double range_max) const {
+  if (range <= grows_from_m || range_max <= grows_from_m) return sigma_m;
+  return sigma_m + (sigma_far_m - sigma_m) * std::min((range - grows_from_m) / (range_max - grows_from_m), 1.0);
 }
 
 void LaserSpot::visit(Fields& f) {
@@ -20,6 +29,11 @@ void LaserSpot::visit(Fields& f) {
   f("divergence_rad", divergence_rad, "how it widens", {.min = 0, .max = 0.5});
   f("merge_m", merge_m, "echoes nearer to each other than this become one", {.min = 0, .max = 10});
   f("min_signal", min_signal, "weaker echoes are not seen", {.min = 0, .max = 100});
+  f("retroreflectors", retroreflectors, "false: retroreflectors read true ranges");
+  f("retro_shift_m", retro_shift_m, "how much too short they read at most", {.min = 0, .max = 10});
+  f("retro_least_signal", retro_least_signal, "signal of a retroreflector from which on it reads short", {.min = 1e-6, .max = 1e6});
+  f("retro_full_signal", retro_full_signal, "signal at which it reads short by retro_shift_m", {.min = 1e-6, .max = 1e6});
+  if (retro_full_signal <= retro_least_signal) f.reject("retro_full_signal", "must be greater than retro_least_signal");
   f("masked_deg", masked_deg, "blind sectors where the vehicle itself stands: from, to, from, to ...", {.min = -360, .max = 360});
   if (masked_deg.size() % 2 != 0) f.reject("masked_deg", "must hold pairs of angles, from and to");
 }
@@ -30,6 +44,11 @@ bool LaserSpot::masks(double angle) const {
     if (deg >= masked_deg[i] && deg <= masked_deg[i + 1]) return true;
   }
   return false;
+}
+
+double LaserSpot::retro_shift(double signal) const {
+  if (!retroreflectors || !(signal > retro_least_signal)) return 0.0;
+  return retro_shift_m * std::min(std::log(signal / retro_least_signal) / std::log(retro_full_signal / retro_least_signal), 1.0);
 }
 
 namespace {
@@ -46,26 +65,35 @@ LaserConfig LaserConfig::make(const std::string& preset) {
   laser.preset = preset;
   if (preset == "sick_s300") return laser;
   if (preset == "sick_tim571") {
-    // Data sheet: 270 deg in steps of 0.33 deg, 15 Hz, 0.05 to 25 m, systematic error +-60 mm, statistical error 20 mm.
+    // Data sheet of the TiM5xx long range (SICK, product family TiM5xx; 8015886 for the TiM561): 270 deg in steps of 0.33 deg, 15 Hz, 0.05
+    // to 25 m, systematic error +-60 mm, statistical error 20 mm at one sigma. It names no larger error at reflectors.
+    // Its sibling's spot is 7 mm + 14.4 mrad x distance wide and 8.6 mrad high (operating instructions TiM3xx, 8024851, section 3.6.4).
     laser.beams = 811;
     laser.rate_hz = 15.0;
     laser.range_max_m = 25.0;
     laser.range_step_m = 0.001;
-    laser.noise = {.enabled = true, .sigma_m = 0.02, .bias_max_m = 0.06};
+    laser.noise = {.enabled = true, .sigma_m = 0.02, .bias_max_m = 0.06, .sigma_far_m = 0.02};
+    laser.spot.diameter_m = 0.007;
+    laser.spot.divergence_rad = 0.0144;
+    laser.spot.retro_shift_m = 0.06;
     return laser;
   }
   if (preset == "hokuyo_utm30lx") {
-    // Data sheet: 270 deg in steps of 0.25 deg, 25 ms a scan, 0.1 to 30 m, accuracy +-30 mm and repeated accuracy 10 mm up to 10 m.
+    // Data sheet (Hokuyo UTM-30LX specification): 270 deg in steps of 0.25 deg, 25 ms a scan, 0.1 to 30 m, steps of 1 mm;
+    // accuracy
+    // +-30 mm up to 10 m and +-50 mm up to 30 m, repeated accuracy (one sigma) 10 mm and 30 mm. What the accuracy leaves beside the
+    // repeated one is 20 mm in both ranges: the systematic part. It names no larger error at reflectors.
     laser.beams = 1081;
     laser.rate_hz = 40.0;
     laser.range_min_m = 0.1;
     laser.range_step_m = 0.001;
-    laser.noise = {.enabled = true, .sigma_m = 0.01, .bias_max_m = 0.02};
+    laser.noise = {.enabled = true, .sigma_m = 0.01, .bias_max_m = 0.02, .sigma_far_m = 0.03, .grows_from_m = 10.0};
+    laser.spot.retro_shift_m = 0.03;
     return laser;
   }
   if (preset == "ideal") {
     laser.noise.enabled = false;
-    laser.spot.mixed = laser.spot.dropouts = false;
+    laser.spot.mixed = laser.spot.dropouts = laser.spot.retroreflectors = false;
     laser.range_step_m = 0.0;
     return laser;
   }

@@ -13,11 +13,11 @@ LaserNoiseModel::LaserNoiseModel(const LaserConfig& laser, std::uint64_t seed, c
 
 void LaserNoiseModel::apply(LaserScan& scan) const {
   const RandomStream random(seed_, sensor_, "range_noise", scan.stamp);
-  const double sigma = laser_.noise.enabled ? laser_.noise.sigma_m : 0.0;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     double range = scan.ranges[i];
     scan.ranges[i] = 0.0f;
     if (!(range > 0.0) || !std::isfinite(range)) continue;
+    const double sigma = laser_.noise.enabled ? laser_.noise.deviation(range, laser_.range_max_m) : 0.0;
     range += bias_m_;
     if (sigma > 0.0) range += sigma * random.normal(i);
     if (laser_.range_step_m > 0.0) range = std::nearbyint(range / laser_.range_step_m) * laser_.range_step_m;

@@ -9,6 +9,7 @@
 
 #include "core/pose.h"
 #include "sensors/intrinsics.h"
+#include "sensors/lens.h"
 #include "sensors/measurements.h"
 
 namespace waretwin {
@@ -16,6 +17,12 @@ namespace waretwin {
 using SensorEvent = std::variant<OdometryReading, LaserScan, RgbdFrame>;
 
 Stamp stamp_of(const SensorEvent& event);
+
+// A depth camera D that has a lens of its own beside the colour camera C.
+struct DepthCameraView {
+  Lens lens;
+  Pose X_CD = Pose::Identity();
+};
 
 // What a mapper may know about a source before the first event: calibration and where the robot stands. No truth.
 struct StreamInfo {
@@ -25,6 +32,8 @@ struct StreamInfo {
     double depth_min_m = 0.0;  // metres; depth outside [min, max] is not trusted
     double depth_max_m = 0.0;
     double rate_hz = 0.0;  // nominal
+    // The depth camera's own view, where frames carry native_depth.
+    std::optional<DepthCameraView> native = std::nullopt;
   };
   struct Laser {
     Pose X_BL = Pose::Identity();

@@ -23,25 +23,10 @@ constexpr double kWaves[2] = {4.0, 8.0};
 // Steps in which the systematic error is tabulated; linear in between, to a hundredth of a millimetre.
 constexpr double kWiggleStep_m = 0.005;
 
-cv::Mat rays_in_field(const CameraConfig& camera) {
-  const Lens lens = camera.depth_lens();
-  cv::Mat rays(lens.intrinsics().height, lens.intrinsics().width, CV_32FC3, cv::Scalar::all(0));
-  parallel_for(static_cast<std::size_t>(rays.rows), 8, [&](std::size_t begin, std::size_t end) {
-    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < rays.cols; ++u) {
-        const auto ray = lens.ray(u, v);
-        if (!ray || !inside_outline(camera.field, ray->x(), ray->y())) continue;
-        rays.at<cv::Vec3f>(v, u) = {static_cast<float>(ray->x()), static_cast<float>(ray->y()), 1.0f};
-      }
-    }
-  });
-  return rays;
-}
-
 }  // namespace
 
 TimeOfFlightModel::TimeOfFlightModel(const CameraConfig& camera, std::uint64_t seed, const std::string& sensor)
-    : camera_(camera), seed_(seed), sensor_(sensor), rays_(rays_in_field(camera)) {
+    : camera_(camera), seed_(seed), sensor_(sensor), rays_(depth_rays(camera)) {
   const RandomStream random(seed, sensor, "wiggle_phase");
   for (std::uint64_t i = 0; i < 2; ++i) wiggle_phase_[i] = 2.0 * std::numbers::pi * random.uniform(i);
 }

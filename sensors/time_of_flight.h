@@ -24,7 +24,7 @@ class TimeOfFlightModel {
   // `sensor` is the camera's name; it keys the random numbers. The phases of the systematic error are drawn here, from seed and sensor.
   TimeOfFlightModel(const CameraConfig& camera, std::uint64_t seed, const std::string& sensor);
 
-  // CV_32FC3, rows x cols of the depth camera: the pixel's ray scaled to z = 1; (0, 0, 0) outside the field.
+  // depth_rays of the camera.
   const cv::Mat& rays() const { return rays_; }
 
   // Depth along the optical axis in the depth camera's own view: CV_32FC1, whole millimetres in the floats of depth_from_millimetres,

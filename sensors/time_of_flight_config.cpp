@@ -31,14 +31,6 @@ void TimeOfFlightConfig::visit(Fields& f) {
   f("invalidation", invalidation, "false: every pixel in field and range is valid");
 }
 
-Pose TimeOfFlightConfig::X_CD(double tilt_down_deg) const {
-  Pose X = Pose::Identity();
-  // Turning about x by a negative angle takes the optical axis towards +y, which points down.
-  X.linear() = Eigen::AngleAxisd(-to_radians(tilt_down_deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
-  X.translation() = Eigen::Vector3d(offset_right_m, 0.0, 0.0);
-  return X;
-}
-
 double TimeOfFlightConfig::range_deviation(double signal) const { return noise_m * std::sqrt(signal + background) / signal; }
 
 }  // namespace waretwin

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/fields.h"
-#include "core/pose.h"
 #include "sensors/lens.h"
 
 namespace waretwin {
@@ -43,8 +42,6 @@ struct TimeOfFlightConfig {
 
   void visit(Fields& f);
 
-  // The depth camera in the colour camera's frame, tilted down by `tilt_down_deg`.
-  Pose X_CD(double tilt_down_deg) const;
   // Declared standard deviation of a range (metres) from the signal: noise_m * sqrt(signal + background) / signal. Photons counted in
   // four shifted windows give a phase whose variance is (signal + background) / signal^2 (R. Lange, "3D time-of-flight distance
   // measurement with custom solid-state image sensors", 2000, section 4.2.2).

@@ -12,18 +12,4 @@ std::vector<std::string> class_names(const Scene& scene) {
   return names;
 }
 
-PixelRays::PixelRays(const Intrinsics& intrinsics, const Pose& X_WC)
-    : origin_(X_WC.translation().cast<float>()),
-      corner_(X_WC.linear() * intrinsics.ray(0.0, 0.0)),
-      right_(X_WC.linear().col(0) / intrinsics.fx),
-      down_(X_WC.linear().col(1) / intrinsics.fy),
-      spread_(static_cast<float>(1.0 / intrinsics.fx)) {}
-
-Ray PixelRays::at(double u, double v) const {
-  Ray ray;
-  ray.origin = origin_;
-  ray.direction = (corner_ + u * right_ + v * down_).cast<float>();
-  return ray;
-}
-
 }  // namespace waretwin

@@ -26,6 +26,10 @@ InfraredAnswer infrared_answer(const Material& material, const SurfacePoint& poi
   const float visibility = 0.25f / std::max(cosine * std::sqrt(cosine2 * (1.0f - alpha2) + alpha2), 1e-4f);
   const float lobe = std::numbers::pi_v<float> * distribution * head_on * visibility;
   answer.backscatter = (answer.albedo + lobe) * cosine;
+  if (material.retroreflection > 0.0f) {
+    answer.retroreflected = material.retroreflection * cosine2 * cosine2 * cosine2;
+    answer.backscatter += answer.retroreflected;
+  }
   return answer;
 }
 

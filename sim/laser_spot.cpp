@@ -19,6 +19,7 @@ constexpr double kRing = 2.0 / 3.0;  // of the spot's radius
 
 struct Echo {
   float range = 0.0f, strength = 0.0f;
+  float retroreflected = 0.0f;  // part of the strength
 };
 
 // The range that a receiver reads from the echoes of one beam.
@@ -26,13 +27,16 @@ float range_of(std::array<Echo, kLooks>& echoes, const LaserSpot& spot) {
   std::sort(echoes.begin(), echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
   const float enough = spot.dropouts ? static_cast<float>(spot.min_signal) : 0.0f;
   for (std::size_t first = 0; first < kLooks;) {
-    float strength = 0.0f, sum = 0.0f;
+    float strength = 0.0f, sum = 0.0f, retroreflected = 0.0f;
     std::size_t last = first;
     for (; last < kLooks && echoes[last].range <= echoes[first].range + static_cast<float>(spot.merge_m); ++last) {
       strength += echoes[last].strength;
       sum += echoes[last].strength * echoes[last].range;
+      retroreflected += echoes[last].retroreflected;
     }
-    if (strength > 0.0f && strength >= enough * static_cast<float>(kLooks)) return sum / strength;
+    if (strength > 0.0f && strength >= enough * static_cast<float>(kLooks)) {
+      return sum / strength - static_cast<float>(spot.retro_shift(retroreflected / static_cast<float>(kLooks)));
+    }
     first = last;
   }
   return 0.0f;
@@ -73,12 +77,13 @@ LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const
     if (spot.masks(angle)) continue;
     for (std::size_t k = 0; k < kLooks; ++k) {
       const Hit& hit = hits[i * kLooks + k];
-      echoes[k] = {std::numeric_limits<float>::infinity(), 0.0f};
+      echoes[k] = {std::numeric_limits<float>::infinity(), 0.0f, 0.0f};
       if (!hit.valid()) continue;
       const Ray& ray = rays[i * kLooks + k];
       const SurfacePoint point = surfaces.at(ray, hit, static_cast<float>(spot.divergence_rad));
       const InfraredAnswer answer = infrared_answer(surfaces.material(hit), point, -ray.direction);
-      echoes[k] = {hit.distance, answer.backscatter / (hit.distance * hit.distance)};
+      const float square = hit.distance * hit.distance;
+      echoes[k] = {hit.distance, answer.backscatter / square, answer.retroreflected / square};
     }
     const float range = range_of(echoes, spot);
     if (range >= static_cast<float>(config.range_min_m)) scan.ranges[i] = range;

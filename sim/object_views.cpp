@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "sim/frame_images.h"
 #include "sim/pixel_extent.h"
+#include "sim/pixel_rays.h"
 
 namespace waretwin {
 
@@ -227,12 +227,7 @@ std::vector<Subject> find_subjects(const RayCaster& ray_caster, const PictureRay
 }  // namespace
 
 PictureRays pinhole_rays(const Intrinsics& intrinsics, const Pose& X_WC, float time) {
-  const PixelRays pixels(intrinsics, X_WC);
-  return {intrinsics, X_WC, [pixels, time](int u, int v) {
-            Ray ray = pixels.at(u, v);
-            ray.time = time;
-            return ray;
-          }};
+  return {intrinsics, X_WC, [pixels = PixelRays(intrinsics, X_WC, time)](int u, int v) { return pixels.at(u, v); }};
 }
 
 std::vector<ObjectView> object_views(const RayCaster& ray_caster, const PictureRays& rays, const cv::Mat& instances) {

@@ -45,7 +45,12 @@ Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom
     lights_.irradiate(point, reflection, v, parts);
     const float pick = random.uniform(), s = random.uniform(), t = random.uniform();
     const int light = DirectLight::choose(parts, pick);
-    if (light >= 0 && !ray_caster_.occluded(lights_.shadow_ray(light, point, s, t))) {
+    Ray shadow;
+    if (light >= 0) {
+      shadow = lights_.shadow_ray(light, point, s, t);
+      shadow.time = first.time;
+    }
+    if (light >= 0 && !ray_caster_.occluded(shadow)) {
       const float chance = parts.weight[static_cast<std::size_t>(light)] / parts.total;
       sum += throughput.cwiseProduct(lights_.radiance(light, reflection, parts)) / chance;
     }
@@ -79,6 +84,7 @@ Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom
     ray = {};
     ray.origin = lifted(point);
     ray.direction = direction;
+    ray.time = first.time;
   }
 }
 

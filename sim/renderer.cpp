@@ -9,13 +9,14 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "sensors/tone_curve.h"
 #include "sim/direct_light.h"
 #include "sim/guided_filter.h"
 #include "sim/path_tracer.h"
 #include "sim/pixel_random.h"
+#include "sim/pixel_rays.h"
 #include "sim/reflection.h"
 #include "sim/surfaces.h"
-#include "sim/tone_curve.h"
 
 namespace waretwin {
 
@@ -87,9 +88,18 @@ class SpreadPoints {
   std::uint32_t shift_[3];
 };
 
-cv::Vec3b tone_mapped_bgr(const Eigen::Vector3f& radiance) {
-  return {tone_mapped(radiance.z()), tone_mapped(radiance.y()), tone_mapped(radiance.x())};
-}
+// Into whichever pictures were asked for.
+struct LightRow {
+  LightRow(FrameImages& images, int y)
+      : colour(images.colour.empty() ? nullptr : images.colour.ptr<cv::Vec3b>(y)),
+        radiance(images.radiance.empty() ? nullptr : images.radiance.ptr<cv::Vec4f>(y)) {}
+  void set(int x, const Eigen::Vector3f& light) const {
+    if (colour != nullptr) colour[x] = {tone_mapped(light.z()), tone_mapped(light.y()), tone_mapped(light.x())};
+    if (radiance != nullptr) radiance[x] = {light.x(), light.y(), light.z(), 0.0f};
+  }
+  cv::Vec3b* colour;
+  cv::Vec4f* radiance;
+};
 
 }  // namespace
 
@@ -110,18 +120,18 @@ struct Renderer::State {
   std::vector<float> visible, openness, scratch;
   SurfaceGuide guide, half_guide;
   std::vector<Eigen::Vector3f> half_positions, half_normals;
+  std::vector<float> half_times;
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
   void prepare(bool shaded);
-  void look(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, const std::uint32_t* shadow_seed,
-            FrameImages& images);
-  void write_geometry(const Tile& tile, const Eigen::Matrix3f& R_CW, const RenderRequest& request, FrameImages& images) const;
+  void look(const PixelRays& pixel_rays, const RenderRequest& request, const std::uint32_t* shadow_seed, FrameImages& images);
+  void write_geometry(const Tile& tile, const PixelRays& pixel_rays, const RenderRequest& request, FrameImages& images) const;
   void shade(const Tile& tile, float spread, std::uint32_t seed, LightParts& parts);
   void find_openness(std::uint32_t seed);
-  void compose(cv::Mat& colour) const;
-  void trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const;
+  void compose(FrameImages& images) const;
+  void trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, FrameImages& images) const;
 };
 
 Renderer::State::State(std::shared_ptr<const RayCaster> caster, const RenderOptions& render_options)
@@ -154,17 +164,17 @@ void Renderer::State::prepare(bool shaded) {
   half_guide.resize((width + 1) / 2, (height + 1) / 2);
   half_positions.resize(half_guide.depth.size());
   half_normals.resize(half_guide.depth.size());
+  half_times.resize(half_guide.depth.size());
 }
 
 // Geometry and, with a seed for the shadow rays, light before shadows are smoothed. A tile's hits are used while they are in the cache.
-void Renderer::State::look(const PixelRays& pixel_rays, const Pose& X_WC, const RenderRequest& request, const std::uint32_t* shadow_seed,
+void Renderer::State::look(const PixelRays& pixel_rays, const RenderRequest& request, const std::uint32_t* shadow_seed,
                            FrameImages& images) {
   prepare(shadow_seed != nullptr);
   images.depth.create(height, width, CV_32FC1);
   images.instances.create(height, width, CV_16UC1);
   if (request.classes) images.classes.create(height, width, CV_16UC1);
   if (request.normals) images.normals.create(height, width, CV_32FC3);
-  const Eigen::Matrix3f R_CW = X_WC.linear().transpose().cast<float>();
   const std::size_t tile_rows = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
   parallel_for(tile_rows, 1, [&](std::size_t begin, std::size_t end) {
     Tile tile;
@@ -175,14 +185,14 @@ void Renderer::State::look(const PixelRays& pixel_rays, const Pose& X_WC, const 
           tile.rays[i] = pixel_rays.at(tile.left + kTileOrder[i].x, tile.top + kTileOrder[i].y);
         }
         ray_caster->cast(tile.rays, tile.hits, Coherence::kCoherent);
-        write_geometry(tile, R_CW, request, images);
+        write_geometry(tile, pixel_rays, request, images);
         if (shadow_seed != nullptr) shade(tile, pixel_rays.spread(), *shadow_seed, parts);
       }
     }
   });
 }
 
-void Renderer::State::write_geometry(const Tile& tile, const Eigen::Matrix3f& R_CW, const RenderRequest& request,
+void Renderer::State::write_geometry(const Tile& tile, const PixelRays& pixel_rays, const RenderRequest& request,
                                      FrameImages& images) const {
   for (std::size_t i = 0; i < kTilePixels; ++i) {
     const int x = tile.left + kTileOrder[i].x, y = tile.top + kTileOrder[i].y;
@@ -194,7 +204,7 @@ void Renderer::State::write_geometry(const Tile& tile, const Eigen::Matrix3f& R_
     if (request.classes) images.classes.ptr<std::uint16_t>(y)[x] = hit.valid() ? class_of_instance[instance] : std::uint16_t{0};
     if (request.normals) {
       Eigen::Vector3f n = Eigen::Vector3f::Zero();
-      if (hit.valid()) n = R_CW * surfaces.face_normal(tile.rays[i], hit);
+      if (hit.valid()) n = pixel_rays.R_CW(y) * surfaces.face_normal(tile.rays[i], hit);
       images.normals.ptr<cv::Vec3f>(y)[x] = {n.x(), n.y(), n.z()};
     }
   }
@@ -262,6 +272,7 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
       half_guide.normal[h] = guide.normal[p];
       half_positions[h] = lifted(point);
       half_normals[h] = point.face_normal;
+      half_times[h] = ray.time;
     }
     if (!options.shadows || !(parts.total > 0.0f)) continue;
     // Every other pixel, as on a chessboard; the filter fills the rest.
@@ -272,7 +283,8 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
     // Of each quad the first and the last pixel are left: two numbers a quad.
     const SpreadPoint sample = points.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
     const int light = DirectLight::choose(parts, sample.a);
-    shadows[count++] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
+    shadows[count] = {light, p, lights.shadow_ray(light, point, sample.b, sample.c)};
+    shadows[count++].ray.time = ray.time;
   }
   if (count == 0) return;
   // Rays to one light travel together.
@@ -315,6 +327,7 @@ void Renderer::State::find_openness(std::uint32_t seed) {
             const Eigen::Vector2f around = circle(sample.b);
             Ray ray;
             ray.origin = half_positions[h];
+            ray.time = half_times[h];
             ray.direction =
                 radius * around.x() * a + radius * around.y() * b + std::sqrt(std::max(0.0f, 1.0f - sample.a)) * half_normals[h];
             // A random reach makes blocking fade with distance at the price of one yes-or-no ray.
@@ -335,37 +348,40 @@ void Renderer::State::find_openness(std::uint32_t seed) {
   smooth(half_guide, kOcclusionRadius, openness, scratch);
 }
 
-void Renderer::State::compose(cv::Mat& colour) const {
+void Renderer::State::compose(FrameImages& images) const {
   const auto exposure = static_cast<float>(options.exposure);
   parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      auto* out = colour.ptr<cv::Vec3b>(y);
+      const LightRow out(images, y);
       for (int x = 0; x < width; ++x) {
         const std::size_t p = index(x, y);
         const float open = options.occlusion && guide.depth[p] > 0.0f ? upsampled(guide, half_guide, openness, x, y) : 1.0f;
         Eigen::Vector3f radiance = visible[p] * direct[p] + open * ambient[p];
         if (glows[p]) radiance += emitted[p];
-        out[x] = tone_mapped_bgr(exposure * radiance);
+        out.set(x, exposure * radiance);
       }
     }
   });
 }
 
-void Renderer::State::trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, cv::Mat& colour) const {
+void Renderer::State::trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, FrameImages& images) const {
   const PathTracer tracer(*ray_caster, surfaces, lights, options.bounces);
   const auto exposure = static_cast<float>(options.exposure);
   parallel_for(static_cast<std::size_t>(height), 2, [&](std::size_t begin, std::size_t end) {
     LightParts parts;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      auto* out = colour.ptr<cv::Vec3b>(y);
+      const LightRow out(images, y);
       for (int x = 0; x < width; ++x) {
         PixelRandom random(seed, static_cast<std::uint32_t>(index(x, y)));
         Eigen::Vector3f sum = Eigen::Vector3f::Zero();
         for (int s = 0; s < options.samples; ++s) {
           const double dx = static_cast<double>(random.uniform()) - 0.5, dy = static_cast<double>(random.uniform()) - 0.5;
-          sum += tracer.radiance(pixel_rays.at(x + dx, y + dy), pixel_rays.spread(), random, parts);
+          // Each sample has a part of the exposure to itself.
+          float moment = 0.5f;
+          if (pixel_rays.lasts()) moment = (static_cast<float>(s) + random.uniform()) / static_cast<float>(options.samples);
+          sum += tracer.radiance(pixel_rays.at(x + dx, y + dy, moment), pixel_rays.spread(), random, parts);
         }
-        out[x] = tone_mapped_bgr(sum * (exposure / static_cast<float>(options.samples)));
+        out.set(x, sum * (exposure / static_cast<float>(options.samples)));
       }
     }
   });
@@ -382,27 +398,34 @@ Renderer::~Renderer() = default;
 
 const Surfaces& Renderer::surfaces() const { return state_->surfaces; }
 
+const RayCaster& Renderer::ray_caster() const { return *state_->ray_caster; }
+const RenderOptions& Renderer::options() const { return state_->options; }
+
 FrameImages Renderer::render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request) {
+  return render(PixelRays(intrinsics, X_WC, state_->ray_caster->time_of(request.stamp)), request);
+}
+
+FrameImages Renderer::render(const PixelRays& pixel_rays, const RenderRequest& request) {
   State& s = *state_;
-  s.width = intrinsics.width;
-  s.height = intrinsics.height;
-  const PixelRays pixel_rays(intrinsics, X_WC);
+  s.width = pixel_rays.width();
+  s.height = pixel_rays.height();
   FrameImages images;
   const auto seed = [&request](const char* purpose) {
     return picture_seed(RandomStream(request.seed, request.sensor, purpose, request.stamp));
   };
-  const bool by_paths = s.options.quality == "path";
+  const bool by_paths = s.options.quality == "path", lit = request.colour || request.radiance;
   const std::uint32_t shadow_seed = seed("render.shadow");
-  s.look(pixel_rays, X_WC, request, request.colour && !by_paths ? &shadow_seed : nullptr, images);
-  if (!request.colour) return images;
-  images.colour.create(s.height, s.width, CV_8UC3);
+  s.look(pixel_rays, request, lit && !by_paths ? &shadow_seed : nullptr, images);
+  if (!lit) return images;
+  if (request.colour) images.colour.create(s.height, s.width, CV_8UC3);
+  if (request.radiance) images.radiance.create(s.height, s.width, CV_32FC4);
   if (by_paths) {
-    s.trace_paths(pixel_rays, seed("render.path"), images.colour);
+    s.trace_paths(pixel_rays, seed("render.path"), images);
     return images;
   }
   if (s.options.shadows) smooth(s.guide, kShadowRadius, s.visible, s.scratch);
   if (s.options.occlusion) s.find_openness(seed("render.occlusion"));
-  s.compose(images.colour);
+  s.compose(images);
   return images;
 }
 

@@ -9,6 +9,7 @@
 #include "core/stamp.h"
 #include "sensors/intrinsics.h"
 #include "sim/frame_images.h"
+#include "sim/pixel_rays.h"
 #include "sim/ray_caster.h"
 #include "sim/render_options.h"
 #include "sim/surfaces.h"
@@ -17,6 +18,7 @@ namespace waretwin {
 
 struct RenderRequest {
   bool colour = true;
+  bool radiance = false;  // the light itself, for a camera model
   bool classes = false;
   bool normals = false;
   // Key of the random numbers; see RandomStream.
@@ -33,11 +35,16 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // The same bytes for the same arguments, whatever was rendered before and at any thread count.
+  // At request.stamp, within the ray caster's shutter. The same bytes for the same arguments, whatever was rendered before and at any
+  // thread count.
   FrameImages render(const Intrinsics& intrinsics, const Pose& X_WC, const RenderRequest& request);
+  // Along any rays. Quality path looks during the whole exposure, fast in its middle, as geometry does in both.
+  FrameImages render(const PixelRays& pixel_rays, const RenderRequest& request);
 
   // The hall's surfaces, for sensors that look with other light; as long as the renderer lives.
   const Surfaces& surfaces() const;
+  const RayCaster& ray_caster() const;
+  const RenderOptions& options() const;
 
  private:
   struct State;

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "sensors/laser_noise.h"
 #include "sensors/odometry_model.h"
+#include "sim/colour_camera.h"
 #include "sim/depth_camera.h"
 #include "sim/laser_spot.h"
 #include "sim/ray_caster.h"
@@ -21,7 +22,8 @@ namespace waretwin {
 namespace {
 
 constexpr const char* kOdometryName = "odometry";
-// Movers go evenly from this much before a frame's stamp to this much after it: longer than any exposure or readout.
+// Movers go evenly from this much before a frame's stamp to this much after it: longer than the exposures of depth, and of colour unless
+// its readout is configured to be longer.
 constexpr Stamp kFrameReach = 25'000'000;
 
 // Sensors measure at whole multiples of their period; one rounding each, so that rates like 15 Hz don't drift.
@@ -79,6 +81,7 @@ struct SimulatedStream::State {
   std::shared_ptr<RayCaster> ray_caster;
   HallMotion motion;
   Renderer renderer;
+  std::map<std::string, ColourCamera> colour_cameras;
   std::map<std::string, std::unique_ptr<DepthCamera>> depth_cameras;
   std::map<std::string, LaserNoiseModel> laser_noise;
   OdometryModel odometry;
@@ -119,6 +122,7 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
   }
   for (const auto& [name, camera] : sensors.cameras) {
     sources.push_back({SensorKind::kCamera, name, camera.rate_hz, turns_until(end, camera.rate_hz)});
+    colour_cameras.emplace(name, ColourCamera(camera, scenario.seed, name, renderer));
     depth_cameras.emplace(name, DepthCamera::make(camera, scenario.seed, name, ray_caster, renderer.surfaces()));
   }
   describe();
@@ -127,7 +131,11 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
 void SimulatedStream::State::describe() {
   info.source = scenario.name;
   for (const auto& [name, camera] : scenario.sensors.cameras) {
-    info.cameras[name] = {camera.intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
+    info.cameras[name] = {camera.view().intrinsics(), camera.mount.X_BC(), camera.depth_min_m, camera.depth_max_m, camera.rate_hz};
+    // True depth comes in the colour view alone.
+    if (camera.depth_model != "gaussian" && !config.truth_depth) {
+      info.cameras[name].native = DepthCameraView{camera.depth_lens(), camera.X_CD()};
+    }
   }
   for (const auto& [name, laser] : scenario.sensors.lasers) info.lasers[name] = {laser.mount.X_BL(), laser.rate_hz};
   info.has_odometry = scenario.sensors.odometry.enabled;
@@ -154,18 +162,12 @@ LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) {
 void SimulatedStream::State::render(RgbdFrame& frame, const HallMoment& moment) {
   const auto begin = std::chrono::steady_clock::now();
   moment.show(*ray_caster);
-  const CameraConfig& camera = scenario.sensors.cameras.at(frame.sensor);
-  RenderRequest request;
-  request.colour = config.colour;
-  request.seed = scenario.seed;
-  request.sensor = frame.sensor;
-  request.stamp = frame.stamp;
-  FrameImages images = renderer.render(camera.intrinsics(), X_WC(frame.sensor, frame.stamp), request);
+  const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
+  FrameImages images = colour_cameras.at(frame.sensor).look(frame.stamp, at, config.colour);
   frame.colour = config.colour ? images.colour : cv::Mat(images.depth.size(), CV_8UC3, cv::Scalar::all(0));
   if (config.truth_depth) {
     frame.depth = depth_from_millimetres(depth_to_millimetres(images.depth));
   } else {
-    const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
     DepthReading reading = depth_cameras.at(frame.sensor)->read(images.depth, frame.stamp, at);
     frame.depth = reading.registered;
     frame.native_depth = reading.native;
@@ -204,7 +206,8 @@ std::optional<SensorEvent> SimulatedStream::next() {
   }
   if (first->kind == SensorKind::kLaser) return s.scan(first->name, stamp);
   ++s.frames_sent;
-  s.motion.advance_to(stamp + kFrameReach);
+  const Stamp reach = std::max(kFrameReach, s.colour_cameras.at(first->name).half_span());
+  s.motion.advance_to(stamp + reach);
   s.truth = {};
   s.truth.stamp = stamp;
   s.truth.sensor = first->name;
@@ -213,7 +216,7 @@ std::optional<SensorEvent> SimulatedStream::next() {
   RgbdFrame frame;
   frame.stamp = stamp;
   frame.sensor = first->name;
-  frame.load = [state = state_, moment = s.motion.moment(stamp - kFrameReach, stamp + kFrameReach)](RgbdFrame& to_load) {
+  frame.load = [state = state_, moment = s.motion.moment(stamp - reach, stamp + reach)](RgbdFrame& to_load) {
     state->render(to_load, moment);
   };
   return frame;
@@ -226,9 +229,8 @@ std::vector<ObjectView> SimulatedStream::object_views() {
   State& s = *state_;
   if (s.truth.instances.empty()) return {};
   s.truth_moment.show(*s.ray_caster);
-  const Intrinsics& intrinsics = s.info.cameras.at(s.truth.sensor).intrinsics;
-  return waretwin::object_views(*s.ray_caster, pinhole_rays(intrinsics, s.truth.X_WC, s.ray_caster->time_of(s.truth.stamp)),
-                                s.truth.instances);
+  const auto at = [&s](Stamp stamp) { return s.X_WC(s.truth.sensor, stamp); };
+  return waretwin::object_views(*s.ray_caster, s.colour_cameras.at(s.truth.sensor).picture_rays(s.truth.stamp, at), s.truth.instances);
 }
 
 const Scene& SimulatedStream::scene() const { return state_->ray_caster->scene(); }

@@ -28,14 +28,14 @@ struct SimulationConfig {
   void visit(Fields& f);
 };
 
-// What only the harness may know about a camera frame. All images are height x width of the camera.
+// What only the harness may know about a camera frame. All images are height x width of the camera, in CameraConfig::view.
 struct FrameTruth {
   Stamp stamp = 0;
   std::string sensor;
   Pose X_WB = Pose::Identity();
   Pose X_WC = Pose::Identity();
-  cv::Mat instances;    // CV_16UC1, TrueObject::id, 0 = background
-  cv::Mat ideal_depth;  // CV_32FC1, metres along the optical axis, no error, field or range limit; 0 = no surface
+  cv::Mat instances;    // CV_16UC1, TrueObject::id, 0 = background; agrees with the colours to the pixel, row by row in time
+  cv::Mat ideal_depth;  // CV_32FC1, metres along the optical axis at the stamp, no error, field or range limit; 0 = no surface
 };
 
 // Events come in order of stamps (a scan's is that of its first beam), equal stamps as odometry, laser, camera, then by sensor name. The

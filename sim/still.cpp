@@ -1,15 +1,12 @@
 #include "sim/still.h"
 
-#include "sim/ray_caster.h"
 #include "sim/renderer.h"
 
 namespace waretwin {
 
-StillPicture render_still(std::shared_ptr<const Scene> scene, const Intrinsics& intrinsics, const Pose& X_WC, const RenderOptions& options,
-                          std::uint64_t seed, const std::string& isa) {
-  RayCasterOptions caster_options;
-  caster_options.isa = isa;
-  Renderer renderer(std::make_shared<RayCaster>(std::move(scene), caster_options), options);
+StillPicture render_still(std::shared_ptr<const RayCaster> ray_caster, const Intrinsics& intrinsics, const Pose& X_WC,
+                          const RenderOptions& options, std::uint64_t seed) {
+  Renderer renderer(std::move(ray_caster), options);
   RenderRequest request;
   request.seed = seed;
   request.sensor = "still";

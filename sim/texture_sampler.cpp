@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "sensors/tone_curve.h"
 
 namespace waretwin {
 
@@ -94,12 +95,6 @@ Taps taps(const Eigen::Vector2f& uv, int width, int height, Texture::Wrap wrap_u
 }  // namespace
 
 float linear_from_srgb(std::uint8_t value) { return decode_table()[value]; }
-
-std::uint8_t srgb_from_linear(float value) {
-  const double x = std::clamp(static_cast<double>(value), 0.0, 1.0);
-  const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(s * 255.0));
-}
 
 float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv) {
   const Taps t = taps(uv, texture.width, texture.height, texture.wrap_u, texture.wrap_v, texture.nearest);

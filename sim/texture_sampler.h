@@ -9,9 +9,8 @@
 
 namespace waretwin {
 
-// IEC 61966-2-1: a stored 8-bit value as linear light in [0, 1], and back (clamped and rounded).
+// IEC 61966-2-1: a stored 8-bit value as linear light in [0, 1]; srgb_from_linear (sensors/tone_curve.h) takes it back.
 float linear_from_srgb(std::uint8_t value);
-std::uint8_t srgb_from_linear(float value);
 
 // Alpha in [0, 1] at full size; uv after the texture transform.
 float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv);

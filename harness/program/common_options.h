@@ -38,6 +38,7 @@ struct Command {
 
 Command add_run_command(CLI::App& program);
 Command add_map_command(CLI::App& program);
+Command add_record_command(CLI::App& program);
 Command add_score_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);

@@ -3,10 +3,15 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "core/error.h"
+#include "core/files.h"
+#include "harness/noise/noise_report.h"
 #include "harness/program/common_options.h"
+#include "harness/program/inspect_motion.h"
+#include "harness/program/progress.h"
 #include "harness/run/map_config.h"
 #include "harness/run/run_config.h"
 #include "harness/score/cuboid_file.h"
@@ -24,6 +29,21 @@ struct InspectOptions {
   CommonOptions common;
   std::string file;
   bool keys = false;
+  std::optional<double> motion_s;
+  bool noise = false;
+  int frames = 0;
+  double reflectivity = 0.0;
+  std::string json;
+};
+
+// What a recording is inspected with.
+struct InspectConfig {
+  RecordingConfig recording;
+  NoiseConfig noise;
+  void visit(Fields& f) {
+    f.group("recording", recording, "how the recording is read");
+    f.group("noise", noise, "how --noise measures");
+  }
 };
 
 void describe_objects(const std::vector<ListedObject>& objects) {
@@ -54,6 +74,10 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
     const Intrinsics& k = camera.intrinsics;
     std::cout << "  camera " << name << ": " << k.width << " x " << k.height << " pixels, fx " << k.fx << " fy " << k.fy << " cx " << k.cx
               << " cy " << k.cy << ", depth " << camera.depth_min_m << " to " << camera.depth_max_m << " m, " << camera.rate_hz << " Hz\n";
+    if (!camera.native) continue;
+    const Intrinsics& own = camera.native->lens.intrinsics();
+    std::cout << "    with the depth camera's own images: " << own.width << " x " << own.height << " pixels, fx " << own.fx << " fy "
+              << own.fy << "\n";
   }
   for (const auto& [name, laser] : info.lasers) std::cout << "  laser " << name << ": " << laser.rate_hz << " Hz\n";
   int frames = 0, scans = 0, readings = 0;
@@ -71,19 +95,44 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
             << ", up is " << info.up_W.transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
 }
 
+int inspect_noise(const InspectOptions& options) {
+  InspectConfig config;
+  if (options.keys) {
+    std::cout << describe_config([&](Fields& f) { config.visit(f); });
+    return 0;
+  }
+  if (options.frames > 0) config.noise.frames = options.frames;
+  if (options.reflectivity > 0.0) config.noise.reflectivity = options.reflectivity;
+  apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
+  const auto stream = open_recording(options.file, config.recording);
+  NoiseSurvey survey;
+  {
+    Progress progress("noise", options.common.quiet);
+    survey = survey_noise(*stream, config.noise,
+                          [&](double done) { progress.update(done, "of " + std::to_string(config.noise.frames) + " frames"); });
+  }
+  if (!options.json.empty()) write_file(options.json, noise_json(survey));
+  std::cout << noise_text(survey);
+  return 0;
+}
+
 int inspect(const InspectOptions& options) {
   options.common.apply();
   const std::filesystem::path file = options.file;
   if (!std::filesystem::exists(file)) throw Error(file, "does not exist; expected a scenario, a model, a recording's folder or a map");
+  if (options.noise) return inspect_noise(options);
   const std::string extension = file.extension().string();
   const std::vector<Setting> settings = options.common.settings();
   if (extension == ".yaml" || extension == ".yml") {
     const RunConfig defaults;
     RunConfig config = load_run_config(file, defaults, "", settings);
+    if (options.common.seed) config.scenario.seed = *options.common.seed;
+    if (options.motion_s) return inspect_motion(config.scenario, *options.motion_s, options.common.quiet);
     std::cout << (options.keys ? describe_config([&](Fields& f) { config.visit(f); }) : describe_scenario(config.scenario));
     if (!options.keys) std::cout << "route: " << to_seconds(RobotMotion(config.scenario.robot).duration()) << " s\n";
     return 0;
   }
+  if (options.motion_s) throw Error(file, "has no motion; --motion expects a scenario");
   if (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json")) {
     MapConfig config;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });
@@ -115,8 +164,30 @@ Command add_inspect_command(CLI::App& program) {
   command->add_option("FILE", options->file, "scenario, .glb, .gltf, recording's folder, map.waretwin, cuboids.json or a run's folder")
       ->required();
   command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
+  command->add_option("--motion", options->motion_s, "of a scenario: runs what moves for S seconds, without sensors, and says how it went")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 1e6));
+  CLI::Option* noise = command->add_flag("--noise", options->noise,
+                                         "of a recording: how far the depth camera's readings scatter about planes, by range and angle of "
+                                         "incidence, and the laws that describe it");
+  command->add_option("--frames", options->frames, "with --noise: how many frames to use, spread evenly (default 60)")
+      ->type_name("N")
+      ->check(whole_number())
+      ->check(CLI::Range(1, 1000))
+      ->needs(noise);
+  command
+      ->add_option("--reflectivity", options->reflectivity,
+                   "with --noise: of the typical surface at 850 nm, for the time-of-flight law (default 0.5)")
+      ->type_name("SHARE")
+      ->check(number_from_to(0.01, 2.0))
+      ->needs(noise);
+  command->add_option("--json", options->json, "with --noise: writes the figures to a file, too")->type_name("FILE")->needs(noise);
   options->common.add_to(*command);
-  command->footer("Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys");
+  command->footer(
+      "Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys\n"
+      "  waretwin inspect scenes/warehouse/scenario.yaml --motion 3600\n"
+      "  waretwin inspect recordings/office --noise --json noise.json\n\n"
+      "`waretwin inspect RECORDING --noise --keys` lists the keys for --set of --noise.");
   return {command, [options] { return inspect(*options); }};
 }
 

@@ -11,7 +11,7 @@
 #include "harness/program/common_options.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/scenario.h"
-#include "sim/robot.h"
+#include "sim/motion/hall_motion.h"
 #include "sim/still.h"
 
 namespace waretwin {
@@ -27,7 +27,7 @@ struct RenderCommandOptions {
 
 // What is rendered and from where, unless the command line says otherwise.
 struct View {
-  std::shared_ptr<Scene> scene;
+  std::shared_ptr<RayCaster> hall;
   Intrinsics intrinsics;
   Pose X_WC = Pose::Identity();
   std::uint64_t seed = 1;
@@ -65,22 +65,22 @@ Pose looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
 }
 
 View view_of_model(const RenderCommandOptions& options) {
-  if (options.time_s) throw Error("--time: " + options.source + " is a model, nothing drives in it; use --pose");
+  if (options.time_s) throw Error("--time: " + options.source + " is a model, nothing drives in it; only scenarios have a time");
   View view;
-  view.scene = std::make_shared<Scene>(load_gltf(options.source));
-  if (view.scene->lights.empty()) {
+  Scene scene = load_gltf(options.source);
+  if (scene.lights.empty()) {
     // A model by itself is often unlit: daylight from the side, so that its shape can be seen.
     Light sun;
     sun.kind = Light::Kind::kDirectional;
     sun.direction = Eigen::Vector3f(0.4f, 0.5f, -1.0f).normalized();
     sun.intensity = Eigen::Vector3f::Constant(2.0f);
-    view.scene->lights.push_back(sun);
-    view.scene->ambient = Eigen::Vector3f::Constant(0.5f);
+    scene.lights.push_back(sun);
+    scene.ambient = Eigen::Vector3f::Constant(0.5f);
   } else {
-    view.scene->ambient = Eigen::Vector3f::Constant(0.3f);
+    scene.ambient = Eigen::Vector3f::Constant(0.3f);
   }
-  view.scene->background = Eigen::Vector3f::Constant(0.6f);
-  const Eigen::AlignedBox3f bounds = view.scene->bounds();
+  scene.background = Eigen::Vector3f::Constant(0.6f);
+  const Eigen::AlignedBox3f bounds = scene.bounds();
   if (bounds.isEmpty()) throw Error(options.source + ": holds no triangles");
   const Eigen::Vector3d centre = bounds.center().cast<double>();
   const double reach = std::max(0.01, static_cast<double>(bounds.diagonal().norm()));
@@ -92,16 +92,17 @@ View view_of_model(const RenderCommandOptions& options) {
   view.X_WC = looking_at(hall ? inside : centre + 1.1 * reach * Eigen::Vector3d(-0.6, -0.8, 0.55).normalized(),
                          hall ? Eigen::Vector3d(centre.x(), centre.y(), bounds.min().z()) : centre);
   view.intrinsics = Intrinsics::from_field_of_view(1280, 720, to_radians(75.0), 2.0 * std::atan(std::tan(to_radians(37.5)) * 9.0 / 16.0));
+  view.hall = std::make_shared<RayCaster>(std::make_shared<const Scene>(std::move(scene)));
   return view;
 }
 
 View view_of_scenario(const RenderCommandOptions& options, const std::vector<Setting>& settings) {
   const Scenario scenario = load_scenario(options.source, settings);
   View view;
-  view.scene = std::make_shared<Scene>(build_scene(scenario));
+  view.hall = std::make_shared<RayCaster>(std::make_shared<const Scene>(build_scene(scenario)));
   view.seed = scenario.seed;
   view.exposure = scenario.lighting.exposure;
-  const RobotMotion motion(scenario.robot);
+  HallMotion motion(scenario, *view.hall);
   const double end_s = to_seconds(motion.duration());
   if (options.time_s && !(*options.time_s >= 0.0 && *options.time_s <= end_s)) {
     throw Error("--time " + std::to_string(*options.time_s) + ": the route takes " + std::to_string(end_s) + " s; expected 0 to that");
@@ -109,7 +110,10 @@ View view_of_scenario(const RenderCommandOptions& options, const std::vector<Set
   CameraConfig camera;
   if (!scenario.sensors.cameras.empty()) camera = scenario.sensors.cameras.begin()->second;
   view.intrinsics = camera.intrinsics();
-  view.X_WC = motion.X_WB(from_seconds(options.time_s.value_or(0.0))) * camera.mount.X_BC();
+  const Stamp moment = from_seconds(options.time_s.value_or(0.0));
+  motion.advance_to(moment);
+  motion.moment(moment, moment).show(*view.hall);
+  view.X_WC = motion.X_WB(moment) * camera.mount.X_BC();
   return view;
 }
 
@@ -149,7 +153,7 @@ int render(const RenderCommandOptions& options) {
     view.intrinsics = Intrinsics::checked(static_cast<int>(size[0]), static_cast<int>(size[1]), view.intrinsics.fx * scale,
                                           view.intrinsics.fy * scale, 0.5 * (size[0] - 1.0), 0.5 * (size[1] - 1.0));
   }
-  const StillPicture picture = render_still(view.scene, view.intrinsics, view.X_WC, how, options.common.seed.value_or(view.seed));
+  const StillPicture picture = render_still(view.hall, view.intrinsics, view.X_WC, how, options.common.seed.value_or(view.seed));
   if (const auto parent = std::filesystem::path(options.out).parent_path(); !parent.empty()) make_folder(parent);
   write_png(options.out, picture.colour);
   return 0;
@@ -162,10 +166,13 @@ Command add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "one picture of a hall or a model from any pose");
   command->add_option("SCENARIO", options->source, "scenario file, or a .glb or .gltf model")->required();
   command->add_option("--out", options->out, "picture to write")->required()->type_name("PNG");
-  auto* time = command->add_option("--time", options->time_s, "what the robot's camera sees after S seconds (default 0)")->type_name("S");
-  command->add_option("--pose", options->pose, "camera in the world: metres, then degrees to the left, downwards, to the right")
-      ->type_name("X,Y,Z,YAW,PITCH[,ROLL]")
-      ->excludes(time);
+  command
+      ->add_option("--time", options->time_s, "what the robot's camera sees after S seconds, and where everything stands then (default 0)")
+      ->type_name("S");
+  command
+      ->add_option("--pose", options->pose,
+                   "camera in the world in place of the robot's: metres, then degrees to the left, downwards, to the right")
+      ->type_name("X,Y,Z,YAW,PITCH[,ROLL]");
   command->add_option("--quality", options->quality, "fast, or path: bounced light")
       ->capture_default_str()
       ->check(CLI::IsMember({"fast", "path"}));

@@ -10,6 +10,7 @@
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
 #include "harness/run/run_folder.h"
+#include "harness/score/motion_text.h"
 #include "harness/score/number_text.h"
 
 namespace waretwin {
@@ -74,7 +75,10 @@ int run(const RunOptions& options) {
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
   std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json)\n";
-  return 0;
+  if (!result.score.motion || result.score.motion->contacts.empty()) return 0;
+  // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
+  for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));
+  return 1;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/digest.h"
 #include "core/error.h"
 #include "harness/truth/sensor_poses.h"
+#include "harness/truth/true_list.h"
 #include "harness/truth/truth_associator.h"
 #include "harness/truth/truth_frames.h"
 #include "harness/truth/truth_localiser.h"
@@ -93,14 +94,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
 
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
-  for (const TrueObject& object : scene->objects) {
-    ListedObject truth;
-    truth.id = object.id;
-    truth.class_name = object.class_name;
-    truth.cuboid = object.cuboid;
-    truth.visible_fraction = coverage ? coverage->fraction(object.id) : 0.0;
-    result.truth.push_back(truth);
-  }
+  result.truth = true_list(*scene, coverage.get());
   result.trajectory = stamped(map.trajectory);
   result.sensor_poses = sensor_poses.poses();
   for (const StampedPose& point : result.trajectory) result.true_trajectory.push_back({point.stamp, stream.true_X_WB(point.stamp)});
@@ -114,6 +108,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
   if (!map.frames.empty()) score.depth = depth_quality.result();
+  score.motion = stream.motion();
   score.timing_ms = summarise_stages(result.mapping.frames);
   score.frames_simulated = map.frames_seen;
   score.frames_mapped = static_cast<int>(map.frames.size());

@@ -81,7 +81,6 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     if (!first) first = stamp;
     last = stamp;
     if (auto* frame = std::get_if<RgbdFrame>(&*event)) {
-      if (max_frames > 0 && frames == max_frames) break;
       ++frames;
       if (frame->load) {
         // Measures what the source takes for the pictures, apart from the mapper's own time.
@@ -101,6 +100,8 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
       if (max_frames > 0) done = std::max(done, static_cast<double>(frames) / max_frames);
       hooks.progress(std::min(done, 1.0), mapper.map());
     }
+    // The simulation ends here, too: a recording that goes on gives the same map.
+    if (max_frames > 0 && frames == max_frames) break;
   }
   result.wall_s = seconds_since(start);
   result.stream_s = first ? to_seconds(last - *first) : 0.0;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/pictures/png_file.h"
+#include "harness/score/motion_text.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
 #include "mapper/integrate/tsdf_volume.h"
@@ -196,6 +197,9 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   }
   for (const auto& [reason, count] : score.rejected)
     page.facts.push_back("Not segmented: " + reason + ", " + std::to_string(count) + " times");
+  if (score.motion) {
+    for (const RobotContact& contact : score.motion->contacts) page.facts.push_back("Error: " + contact_text(contact));
+  }
   page.files = kMapFiles;
   for (const char* name : {"truth.json", "trajectory_truth.tum", "table6.md", "score.json"}) page.files.emplace_back(name);
   if (!result.truth_frames.empty()) page.files.emplace_back("truth_frames.jsonl");

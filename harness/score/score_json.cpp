@@ -63,6 +63,35 @@ Json trajectory_json(const TrajectoryScore& score) {
           {"rpe_trans_m", score.rpe_trans_m}, {"rpe_rot_deg", score.rpe_rot_deg}, {"poses", score.pairs}};
 }
 
+Json motion_json(const MotionReport& motion) {
+  Json json = {{"contacts", Json::array()},
+               {"items",
+                {{"came_in", motion.items_in},
+                 {"delivered", motion.items_delivered},
+                 {"in_hall", motion.items_in_hall},
+                 {"fell_off", motion.items_fell_off},
+                 {"fell_through", motion.items_fell_through},
+                 {"waited", motion.items_waited}}},
+               {"belts", Json::array()}};
+  for (const RobotContact& contact : motion.contacts) {
+    json["contacts"].push_back({{"with", contact.with},
+                                {"begin_s", to_seconds(contact.begin)},
+                                {"end_s", to_seconds(contact.end)},
+                                {"x_m", contact.p_W.x()},
+                                {"y_m", contact.p_W.y()},
+                                {"z_m", contact.p_W.z()},
+                                {"force_n", contact.force_n}});
+  }
+  for (const BeltReport& belt : motion.belts) {
+    json["belts"].push_back({{"name", belt.name},
+                             {"wanted_mps", belt.wanted_mps},
+                             {"mean_ratio", belt.mean_ratio},
+                             {"worst_ratio", belt.worst_ratio},
+                             {"carried_s", belt.carried_s}});
+  }
+  return json;
+}
+
 std::string text(const Json& json) { return json.dump(2) + "\n"; }
 
 }  // namespace
@@ -86,6 +115,7 @@ std::string score_json(const RunScore& score) {
     json["depth"]["median_abs_error_m"] = score.depth->median_abs_error_m;
     json["depth"]["p95_abs_error_m"] = score.depth->p95_abs_error_m;
   }
+  json["motion"] = score.motion ? motion_json(*score.motion) : Json(nullptr);
   json["trajectory"] = nullptr;
   if (score.trajectory) {
     json["trajectory"] = trajectory_json(*score.trajectory);

@@ -392,6 +392,14 @@ const std::map<std::string, Recipe>& recipes() {
        [] {
          return fabric("fabric blue", {112, 66, 36});
        }},
+      {"skin",
+       [] {
+         return plain({0.80, 0.58, 0.47}, 0, 0.6, 0.6);
+       }},
+      {"reflective_stripe",
+       [] {
+         return plain({0.82, 0.83, 0.84}, 0, 0.4, 0.9);
+       }},
       {"paper",
        [] {
          return plain({0.93, 0.93, 0.91}, 0, 0.9, 0.8);

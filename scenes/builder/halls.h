@@ -14,7 +14,12 @@ void build_agiprobot(Kit& kit);
 void build_warehouse(Kit& kit);
 
 std::vector<std::string> hall_names();
-// The hall's model as .glb. The same name gives the same bytes. Throws Error for a name that is not known.
-std::string build_hall(const std::string& name);
+
+struct HallFile {
+  std::string name;  // hall.glb, carton.glb ...
+  std::string glb;
+};
+// The hall's own model and those of what moves in it. The same name gives the same bytes. Throws Error for a name that is not known.
+std::vector<HallFile> build_hall(const std::string& name);
 
 }  // namespace waretwin::builder

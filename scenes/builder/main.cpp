@@ -1,4 +1,4 @@
-// waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]: writes OUT_FOLDER/HALL/hall.glb of one hall or all.
+// waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]: writes the models of one hall or all to OUT_FOLDER/HALL.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -17,11 +17,13 @@ int main(int argc, char** argv) {
   try {
     const std::vector<std::string> names = argc == 3 ? std::vector<std::string>{argv[2]} : builder::hall_names();
     for (const std::string& name : names) {
-      const std::string glb = builder::build_hall(name);
+      const std::vector<builder::HallFile> files = builder::build_hall(name);
       const std::filesystem::path folder = std::filesystem::path(argv[1]) / name;
       make_folder(folder);
-      write_file(folder / "hall.glb", glb);
-      std::printf("%s: %zu bytes\n", (folder / "hall.glb").c_str(), glb.size());
+      for (const builder::HallFile& file : files) {
+        write_file(folder / file.name, file.glb);
+        std::printf("%s: %zu bytes\n", (folder / file.name).c_str(), file.glb.size());
+      }
     }
   } catch (const Error& error) {
     std::fprintf(stderr, "waretwin_build_halls: %s\n", error.what());

@@ -64,12 +64,6 @@ void add_conveyor_loop(Kit& kit, int hall) {
   add_floor_conveyor(kit, loop, {x_cross, y_curve_a - kGap - segment / 2, 0, 90},
                      {.name = "conveyor_cross", .length = segment, .rollers = false});
   add_curve_conveyor(kit, loop, {end_x + kGap, y_curve_b, 0, -90}, {.name = "conveyor_curve_b", .radius = radius, .belt = true});
-  // Parcels on their way; they belong to no conveyor.
-  const double top = 0.75;
-  add_carton(kit, loop, {-6.9, y_a, top + 0.0005, 6}, 0.40, 0.30, 0.22);
-  add_carton(kit, loop, {-1.2, y_a + 0.02, top + 0.0005, -12}, 0.30, 0.30, 0.30);
-  add_bin(kit, loop, {-5.3, y_b, top + 0.0005, 4}, 0.40, 0.30, 0.22, "bin_blue", true);
-  add_carton(kit, loop, {-2.2, y_b - 0.03, top + 0.0005, 20}, 0.40, 0.30, 0.22);
   // Where goods come from and go to.
   add_signal_tower(kit, loop, {-8.6, y_a, 0.95});
   add_cabinet(kit, loop, {-8.6, y_a, 0, 90}, {.width = 0.6, .depth = 0.5, .height = 0.95});

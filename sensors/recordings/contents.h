@@ -14,6 +14,7 @@ struct RecordedFrame {
   Stamp stamp = 0;
   std::filesystem::path colour;
   std::filesystem::path depth;
+  std::filesystem::path native_depth;  // empty: none
   std::optional<Pose> X_WC;
 };
 

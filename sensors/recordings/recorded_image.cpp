@@ -3,6 +3,8 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -28,6 +30,14 @@ cv::Mat decode(const std::filesystem::path& file, int flags) {
   return image;
 }
 
+void encode(const std::filesystem::path& file, const cv::Mat& image) {
+  std::vector<unsigned char> png;
+  if (!cv::imencode(".png", image, png, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    throw InternalError("a picture could not be encoded: " + file.string());
+  }
+  write_file(file, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+}
+
 }  // namespace
 
 cv::Mat read_colour_image(const std::filesystem::path& file) { return decode(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION); }
@@ -47,6 +57,16 @@ cv::Mat read_depth_image(const std::filesystem::path& file, double units_per_met
     }
   }
   return depth_from_millimetres(units);
+}
+
+void write_colour_image(const std::filesystem::path& file, const cv::Mat& colour) {
+  WARETWIN_CHECK(colour.type() == CV_8UC3, "colour has three channels of 8 bits");
+  encode(file, colour);
+}
+
+void write_depth_image(const std::filesystem::path& file, const cv::Mat& depth) {
+  WARETWIN_CHECK(depth.type() == CV_32FC1, "depth is an image of 32-bit floats");
+  encode(file, depth_to_millimetres(depth));
 }
 
 }  // namespace waretwin

@@ -22,19 +22,28 @@ bool has_direction(const std::vector<double>& numbers) {
   return numbers.size() == 3 && Eigen::Vector3d(numbers[0], numbers[1], numbers[2]).norm() > 1e-6;
 }
 
-std::function<void(RgbdFrame&)> loader(const RecordedFrame& recorded, const Intrinsics& intrinsics, double depth_scale) {
-  return [recorded, intrinsics, depth_scale](RgbdFrame& frame) {
-    const auto check = [&](const cv::Mat& image, const fs::path& file) {
-      if (image.cols == intrinsics.width && image.rows == intrinsics.height) return;
-      throw Error(file, "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels; expected " +
-                            std::to_string(intrinsics.width) + " x " + std::to_string(intrinsics.height));
-    };
+void check_size(const cv::Mat& image, const fs::path& file, const Intrinsics& intrinsics) {
+  if (image.cols == intrinsics.width && image.rows == intrinsics.height) return;
+  throw Error(file, "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) + " pixels; expected " +
+                        std::to_string(intrinsics.width) + " x " + std::to_string(intrinsics.height));
+}
+
+std::function<void(RgbdFrame&)> loader(const RecordedFrame& recorded, const StreamInfo::Camera& camera, double depth_scale) {
+  std::optional<Intrinsics> native;
+  if (camera.native) native = camera.native->lens.intrinsics();
+  return [recorded, intrinsics = camera.intrinsics, native, depth_scale](RgbdFrame& frame) {
     cv::Mat colour = read_colour_image(recorded.colour);
-    check(colour, recorded.colour);
+    check_size(colour, recorded.colour, intrinsics);
     cv::Mat depth = read_depth_image(recorded.depth, depth_scale);
-    check(depth, recorded.depth);
+    check_size(depth, recorded.depth, intrinsics);
+    cv::Mat native_depth;
+    if (native && !recorded.native_depth.empty()) {
+      native_depth = read_depth_image(recorded.native_depth, depth_scale);
+      check_size(native_depth, recorded.native_depth, *native);
+    }
     frame.colour = std::move(colour);
     frame.depth = std::move(depth);
+    frame.native_depth = std::move(native_depth);
   };
 }
 
@@ -77,13 +86,21 @@ void add_frames(const RecordingContents& contents, const RecordingConfig& config
   camera.depth_min_m = known ? known->depth_min_m : config.depth_min_m;
   camera.depth_max_m = known ? known->depth_max_m : config.depth_max_m;
   camera.rate_hz = known ? known->rate_hz : contents.rate_hz;
+  const auto is_native = [](const RecordedFrame& f) { return !f.native_depth.empty(); };
+  if (known && known->has_native) {
+    const RecordingCalibration::Native& n = known->native;
+    camera.native =
+        DepthCameraView{Lens(Intrinsics::checked(n.width, n.height, n.fx, n.fy, n.cx, n.cy), n.distortion), pose_from_numbers(n.X_CD)};
+  } else if (std::any_of(contents.frames.begin(), contents.frames.end(), is_native)) {
+    throw Error(info.source + ": has depth_native.txt, but no lens for it; expected has_native and native under camera in recording.yaml");
+  }
   const std::string name = known ? known->name : "camera";
   for (const RecordedFrame& recorded : contents.frames) {
     RgbdFrame frame;
     frame.stamp = recorded.stamp;
     frame.sensor = name;
     frame.recorded_X_WC = recorded.X_WC;
-    frame.load = loader(recorded, camera.intrinsics, depth_scale);
+    frame.load = loader(recorded, camera, depth_scale);
     info.has_recorded_poses = info.has_recorded_poses || recorded.X_WC.has_value();
     events.emplace_back(std::move(frame));
   }
@@ -152,6 +169,17 @@ void visit_pose(Fields& f, const char* key, std::vector<double>& numbers, const 
 
 }  // namespace
 
+void RecordingCalibration::Native::visit(Fields& f) {
+  f("width", width, "pixels", {.min = 1, .max = 16384, .required = true});
+  f("height", height, "pixels", {.min = 1, .max = 16384, .required = true});
+  f("fx", fx, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
+  f("fy", fy, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
+  f("cx", cx, "principal point in pixels", {.required = true});
+  f("cy", cy, "principal point in pixels", {.required = true});
+  f.group("distortion", distortion, "of the lens");
+  visit_pose(f, "X_CD", X_CD, "pose of the depth camera in the colour camera's frame, 3 x 4, row by row");
+}
+
 void RecordingCalibration::Camera::visit(Fields& f) {
   f("name", name, "the sensor's name");
   f("width", width, "pixels", {.min = 1, .max = 16384, .required = true});
@@ -165,6 +193,8 @@ void RecordingCalibration::Camera::visit(Fields& f) {
   f("depth_scale", depth_scale, "units of a depth image in one metre", {.min = 1e-3, .max = 1e6});
   f("rate_hz", rate_hz, "nominal frames a second", {.min = 0.001, .max = 10000});
   visit_pose(f, "X_BC", X_BC, "pose of the camera on the vehicle, 3 x 4, row by row");
+  f("has_native", has_native, "whether `native` counts");
+  if (has_native) f.group("native", native, "the depth camera's own view, that of depth_native.txt", {.required = true});
 }
 
 void RecordingCalibration::Laser::visit(Fields& f) {

@@ -10,6 +10,8 @@
 //           ("fx fy cx cy", further numbers are ignored), else those of the Freiburg 1 camera.
 // Beside either may stand what our own recordings add:
 //   recording.yaml  calibration and start pose, exact (RecordingCalibration below); laser.txt and odometry.txt (text_formats.h).
+//   depth_native.txt  (tum) lines "seconds file" of the depth camera's own images, before they were warped into the colour view; in the
+//                   units of the other depth images, in the lens that recording.yaml names under camera.native.
 // A folder with laser.txt alone is a laser log. Lines that begin with # and empty lines are comments in all text files.
 #pragma once
 
@@ -37,6 +39,13 @@ struct RecordingConfig {
 
 // What recording.yaml holds. Poses are the upper three rows of their 4 x 4 matrix, row by row.
 struct RecordingCalibration {
+  struct Native {  // the depth camera's own view
+    int width = 0, height = 0;
+    double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  // pixels
+    Distortion distortion;
+    std::vector<double> X_CD = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    void visit(Fields& f);
+  };
   struct Camera {
     std::string name = "camera";
     int width = 0, height = 0;
@@ -45,6 +54,8 @@ struct RecordingCalibration {
     double depth_scale = 5000.0;  // units of a depth image in one metre
     double rate_hz = 30.0;
     std::vector<double> X_BC = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    bool has_native = false;
+    Native native;
     void visit(Fields& f);
   };
   struct Laser {

@@ -117,13 +117,20 @@ RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig&
   }
   const std::vector<StampedFile> colours = read_file_list(folder / "rgb.txt");
   const std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
+  std::vector<StampedFile> natives;
+  if (fs::exists(folder / "depth_native.txt")) natives = read_file_list(folder / "depth_native.txt");
   std::vector<StampedPose> poses;
   if (fs::exists(folder / "groundtruth.txt")) poses = read_trajectory(folder / "groundtruth.txt");
   const Stamp tolerance = from_seconds(config.association_s);
   for (std::size_t i = 0; i < colours.size() && !depths.empty(); ++i) {
     const StampedFile& depth = depths[nearest(depths, colours[i].stamp)];
     if (std::abs(depth.stamp - colours[i].stamp) > tolerance || nearest(colours, depth.stamp) != i) continue;
-    contents.frames.push_back({colours[i].stamp, colours[i].file, depth.file, pose_at(poses, colours[i].stamp, tolerance)});
+    fs::path native;
+    if (!natives.empty()) {
+      const StampedFile& near = natives[nearest(natives, depth.stamp)];
+      if (std::abs(near.stamp - depth.stamp) <= tolerance) native = near.file;
+    }
+    contents.frames.push_back({colours[i].stamp, colours[i].file, depth.file, native, pose_at(poses, colours[i].stamp, tolerance)});
   }
   if (contents.frames.empty()) {
     throw Error(folder, "has no colour picture with a depth image within " + std::to_string(config.association_s) + " s (" +

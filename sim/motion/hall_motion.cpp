@@ -306,7 +306,7 @@ MotionReport HallMotion::report() const {
   report.items_in_hall = counts.in_hall;
   report.items_fell_off = counts.fell_off;
   report.items_fell_through = counts.fell_through;
-  report.items_waited = counts.turned_away;
+  report.items_waited = counts.waited;
   for (const Belt& belt : s.belts->all()) {
     BeltReport entry;
     entry.name = belt.surface.name;

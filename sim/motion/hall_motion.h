@@ -47,7 +47,7 @@ struct MotionReport {
   int items_in = 0, items_delivered = 0, items_in_hall = 0;  // of streams
   int items_fell_off = 0;                                    // reached the floor
   int items_fell_through = 0;                                // went down through the surface that carried them
-  int items_waited = 0;                                      // came in later than due, since their place was taken or all were in the hall
+  int items_waited = 0;                                      // came in later than due, since their place was taken
   std::vector<BeltReport> belts;
   std::vector<RobotContact> contacts;
 };

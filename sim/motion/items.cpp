@@ -80,43 +80,38 @@ void Items::drop_clutter() {
   }
 }
 
+Pose Items::next_place(const Stream& stream) const {
+  const ItemStream& config = stream.config;
+  const RandomStream random(seed_, config.name.empty() ? config.body.file.stem().string() : config.name, "item_stream");
+  const auto draw = [&](std::uint64_t k) { return 2.0 * static_cast<double>(random.uniform(stream.number, k)) - 1.0; };
+  const double yaw = to_radians(config.yaw_deg), side = config.side_spread_m * draw(0);
+  return make_upright_pose(config.x_m - side * std::sin(yaw), config.y_m + side * std::cos(yaw), config.z_m,
+                           yaw + to_radians(config.yaw_spread_deg) * draw(1));
+}
+
 void Items::let_in(double time_s) {
   for (Stream& stream : streams_) {
     if (time_s < stream.due_s) continue;
-    const ItemStream& config = stream.config;
-    const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(stream.first), end = begin + config.most;
-    const auto free = std::find_if(begin, end, [](const Item& item) { return !item.present; });
-    bool in = false;
-    if (free != end) {
-      const RandomStream random(seed_, config.name.empty() ? config.body.file.stem().string() : config.name, "item_stream");
-      const auto draw = [&](std::uint64_t k) { return 2.0 * static_cast<double>(random.uniform(stream.number, k)) - 1.0; };
-      const double yaw = to_radians(config.yaw_deg), side = config.side_spread_m * draw(0);
-      const Pose X_WG = make_upright_pose(config.x_m - side * std::sin(yaw), config.y_m + side * std::cos(yaw), config.z_m,
-                                          yaw + to_radians(config.yaw_spread_deg) * draw(1));
-      if (!world_.would_touch(*free->body, X_WG * free->X_GS, BodyRole::kItem | BodyRole::kWalker | BodyRole::kRobot)) {
-        world_.put_in(*free->body, X_WG * free->X_GS);
-        // What a belt carries must not fall asleep while the belt stands.
-        free->body->setActivationState(DISABLE_DEACTIVATION);
-        free->present = true;
-        free->touched_floor = false;
-        free->belt = -1;
-        free->alone_s = 0.0;
-        free->ride_sum = 0.0;
-        free->ride_samples = 0;
-        in = true;
-      }
-    }
-    if (!in) {
-      if (!stream.waiting) ++counts_.turned_away;
+    const auto begin = items_.begin() + static_cast<std::ptrdiff_t>(stream.first), end = begin + stream.config.most;
+    const auto item = std::find_if(begin, end, [](const Item& i) { return !i.present; });
+    if (item == end) continue;  // all are in the hall
+    const Pose X_WS = next_place(stream) * item->X_GS;
+    if (world_.would_touch(*item->body, X_WS, BodyRole::kItem | BodyRole::kWalker | BodyRole::kRobot)) {
+      if (!stream.waiting) ++counts_.waited;
       stream.waiting = true;
       continue;
     }
+    world_.put_in(*item->body, X_WS);
+    // What a belt carries must not fall asleep while the belt stands.
+    item->body->setActivationState(DISABLE_DEACTIVATION);
+    item->begin_stay();
     ++counts_.came_in;
     ++counts_.in_hall;
     ++stream.number;
-    // One that waited keeps its distance from the next.
-    stream.due_s = (stream.waiting ? time_s : stream.due_s) + config.every_s;
     stream.waiting = false;
+    // One that came late keeps its distance from the next.
+    const bool late = time_s - stream.due_s > 0.1 * stream.config.every_s;
+    stream.due_s = (late ? time_s : stream.due_s) + stream.config.every_s;
   }
 }
 

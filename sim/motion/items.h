@@ -22,6 +22,13 @@ struct Item {
   double ride_sum = 0.0;       // of its speed over the surface's in the present ride; see Belt
   long ride_samples = 0;
 
+  void begin_stay() {
+    present = true;
+    touched_floor = false;
+    belt = -1;
+    alone_s = ride_sum = 0.0;
+    ride_samples = 0;
+  }
   Pose X_WG() const { return from_bullet(body->getWorldTransform()) * X_GS.inverse(); }
   Eigen::Vector3d middle() const { return from_bullet(body->getWorldTransform().getOrigin()); }
 };
@@ -30,7 +37,7 @@ struct ItemCounts {
   int came_in = 0, delivered = 0, in_hall = 0;
   int fell_off = 0;      // of streams' items: reached the floor
   int fell_through = 0;  // left the belt that carried them downwards through its surface
-  int turned_away = 0;   // an item was due and its place was not free, or all were in the hall; tried again until it is
+  int waited = 0;        // came in later than due, since their place was taken
 };
 
 // Items stand in Scene::movers in this order: streams', then clutter.
@@ -58,6 +65,7 @@ class Items {
     std::uint64_t number = 0;  // of the next item, from 0
     bool waiting = false;
   };
+  Pose next_place(const Stream& stream) const;  // X_WG
   void make(const Scene& scene, std::size_t mover, const std::string& name, const ItemBody& body);
 
   BulletWorld& world_;

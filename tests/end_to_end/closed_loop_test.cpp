@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/end_to_end/program.h"
@@ -31,9 +32,27 @@ TEST(ClosedLoop, MapsTheAgiProbotHallAsThePaperDoes) {
   EXPECT_LE(summary["mean_e_rot_deg"].get<double>(), 3.0);
   for (const Json& object : score["objects"]) EXPECT_GE(object["visible_fraction"].get<double>(), 0.6) << object.dump();
   EXPECT_LE(score["peak_rss_mb"].get<double>(), 1536.0);
-  for (const char* name :
-       {"table6.md", "cuboids.json", "truth.json", "map.glb", "map.ply", "map.waretwin", "occupancy.pgm", "occupancy.yaml", "cloud.ply",
-        "trajectory.tum", "trajectory_truth.tum", "timing.csv", "topdown.png", "mesh.png", "config.yaml", "report.html"}) {
+  for (const char* name : {"table6.md",
+                           "cuboids.json",
+                           "truth.json",
+                           "map.glb",
+                           "map.ply",
+                           "map.waretwin",
+                           "occupancy.pgm",
+                           "occupancy.yaml",
+                           "cloud.ply",
+                           "trajectory.tum",
+                           "trajectory_truth.tum",
+                           "timing.csv",
+                           "topdown.png",
+                           "mesh.png",
+                           "config.yaml",
+                           "report.html",
+                           "truth_frames.jsonl",
+                           "truth_poses/odometry.tum",
+                           "truth_poses/cameras/camera.tum",
+                           "truth_poses/cameras/camera.depth.tum",
+                           "truth_poses/lasers/laser.tum"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
     EXPECT_GT(std::filesystem::file_size(folder.path() / name), 0u) << name;
   }
@@ -62,6 +81,10 @@ TEST(ClosedLoop, GivesTheSameDigestAtAnyNumberOfThreads) {
   EXPECT_EQ(one["digest"], four["digest"]);
   EXPECT_EQ(read_file(folder.path() / "1/cuboids.json"), read_file(folder.path() / "4/cuboids.json"));
   EXPECT_EQ(read_file(folder.path() / "1/map.ply"), read_file(folder.path() / "4/map.ply"));
+  const std::string truth = read_file(folder.path() / "1/truth_frames.jsonl");
+  EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), one["frames"]["mapped"].get<int>()) << "a line a mapped frame";
+  EXPECT_EQ(truth, read_file(folder.path() / "2/truth_frames.jsonl"));
+  EXPECT_EQ(truth, read_file(folder.path() / "4/truth_frames.jsonl"));
 }
 
 TEST(ClosedLoop, ChangesWithTheSeedOnly) {

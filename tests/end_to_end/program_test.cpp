@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -14,7 +15,7 @@ using test::TemporaryFolder;
 TEST(Program, ExplainsItself) {
   const auto top = test::waretwin("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"run", "map", "score", "render", "inspect"}) {
+  for (const char* command : {"run", "map", "record", "score", "render", "inspect"}) {
     EXPECT_NE(top.out.find(command), std::string::npos) << command;
     const auto help = test::waretwin(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;
@@ -163,6 +164,35 @@ TEST(Program, ScoresListsAndTrajectories) {
   EXPECT_NEAR(ate["trajectory"]["ate_rmse_m"].get<double>(), 0.0, 1e-9) << "aligned";
   EXPECT_NEAR(ate["trajectory"]["ate_unaligned_rmse_m"].get<double>(), 3.0, 1e-9);
   EXPECT_ONE_LINE(test::waretwin("score " + at("a.tum") + " --truth " + at("truth.json")), "truth.json");
+}
+
+TEST(Program, ReportsWhatTheVehicleTouches) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  // Straight into station 1, whose conveyor is mapped all the same.
+  const auto run =
+      test::waretwin("run " + agiprobot() + " --out '" + out + "' --profile paper --detector none --quiet " +
+                     "--set sensors.cameras.camera.rate_hz=1 --set robot.route.1.x_m=-1.6 --set robot.route.1.y_m=-1.9 --frames 6");
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_NE(run.err.find("the vehicle touched"), std::string::npos) << run.err;
+  const auto score = nlohmann::json::parse(read_file(folder.path() / "out/score.json"));
+  ASSERT_FALSE(score["motion"]["contacts"].empty());
+  const auto& contact = score["motion"]["contacts"][0];
+  EXPECT_GT(contact["begin_s"].get<double>(), 1.0);
+  EXPECT_LT(std::abs(contact["y_m"].get<double>() + 1.6), 0.4) << "at the cabinet's front";
+}
+
+TEST(Program, InspectsWhatMoves) {
+  const auto busy = "'" + (test::repository() / "scenes/agiprobot/busy.yaml").string() + "'";
+  const auto first = test::waretwin("inspect " + busy + " --motion 4 --quiet");
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  for (const char* part : {"conveyor_1", "1 came in", "the vehicle touched nothing", "digest "}) {
+    EXPECT_NE(first.out.find(part), std::string::npos) << first.out;
+  }
+  EXPECT_EQ(first.out, test::waretwin("inspect " + busy + " --motion 4 --quiet --threads 1").out);
+  EXPECT_ONE_LINE(test::waretwin("inspect " + busy + " --motion soon"), "soon");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + busy + " --motion 4 --set motion.belts.0.object=conveyor_9"), "conveyor_9");
+  EXPECT_ONE_LINE(test::waretwin("inspect '" + (test::repository() / "scenes/agiprobot/hall.glb").string() + "' --motion 4"), "--motion");
 }
 
 }  // namespace

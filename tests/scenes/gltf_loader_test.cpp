@@ -161,6 +161,7 @@ TEST(GltfLoader, ReadsMaterials) {
   EXPECT_TRUE(m.alpha_mask && m.double_sided);
   EXPECT_FLOAT_EQ(m.alpha_cutoff, 0.7f);
   EXPECT_FLOAT_EQ(m.reflectivity_850nm, 0.6f);
+  EXPECT_EQ(m.retroreflection, 0.0f);
   EXPECT_EQ(m.base_colour_texture.uv_set, 1);
   const Eigen::Vector2f uv = m.base_colour_texture.uv_transform * Eigen::Vector3f(1, 0, 1);
   EXPECT_NEAR(uv.x(), 0.5 + 2 * std::cos(angle), 1e-6);
@@ -173,6 +174,18 @@ TEST(GltfLoader, ReadsMaterials) {
   EXPECT_TRUE(t.nearest);
   EXPECT_EQ(t.wrap_u, Texture::Wrap::kClampToEdge);
   EXPECT_EQ(t.wrap_v, Texture::Wrap::kMirroredRepeat);
+}
+
+TEST(GltfLoader, RetroreflectorsAreMarkedInTheExtrasOfTheirMaterials) {
+  for (const auto& [value, expected] : {std::pair<json, float>{true, 220.0f}, {false, 0.0f}, {750, 750.0f}, {0.5, 0.5f}}) {
+    GltfWriter w;
+    w.add("materials", {{"name", "tape"}, {"extras", {{"waretwin", {{"retroreflective", value}}}}}});
+    json primitive = w.triangle();
+    primitive["material"] = 0;
+    w.show(primitive);
+    const Scene scene = load(w);
+    EXPECT_EQ(scene.materials[static_cast<std::size_t>(scene.meshes[0].material)].retroreflection, expected) << value;
+  }
 }
 
 TEST(GltfLoader, PlacesLights) {

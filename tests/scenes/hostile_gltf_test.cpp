@@ -100,6 +100,21 @@ TEST(HostileGltf, EndsInOneErrorThatNamesTheElement) {
          for (int i = 0; i < 500; ++i) deep = json::array({deep});
          w.root["extras"] = deep;
        }},
+      {"a retroreflector of words",
+       {"material 0 'm'", "retroreflective"},
+       [](GltfWriter& w) {
+         w.add("materials", {{"name", "m"}, {"extras", {{"waretwin", {{"retroreflective", "yes"}}}}}});
+       }},
+      {"a retroreflector below nothing",
+       {"material 0", "retroreflective", "0 to 100000"},
+       [](GltfWriter& w) {
+         w.add("materials", {{"extras", {{"waretwin", {{"retroreflective", -1}}}}}});
+       }},
+      {"a retroreflector beyond reason",
+       {"material 0", "retroreflective"},
+       [](GltfWriter& w) {
+         w.add("materials", {{"extras", {{"waretwin", {{"retroreflective", 1e6}}}}}});
+       }},
       {"class that is no text", {"node 0", "class"}, [](GltfWriter& w) { w.root["nodes"][0]["extras"]["waretwin"]["class"] = 3; }},
       {"no such light", {"node 0", "light 4"}, [](GltfWriter& w) { w.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 4; }},
       {"a picture that is none",

@@ -72,6 +72,48 @@ TEST_F(ScenarioTest, ResolvedValuesReadBack) {
   EXPECT_FALSE(again.robot.route[0].heading_deg);
 }
 
+const char* const kMotion =
+    "motion:\n"
+    "  belts:\n"
+    "    - {object: second, speed_mps: 0.4, changes: [{at_s: 1, speed_mps: 0}, {at_s: 2, speed_mps: 0.4}]}\n"
+    "  streams:\n"
+    "    - {file: plain.glb, x_m: 1, y_m: 2, z_m: 0.5, most: 3}\n"
+    "  clutter:\n"
+    "    - {name: tool, file: plain.glb, count: 2, x_m: 0, y_m: 0}\n"
+    "  walkers:\n"
+    "    - {file: plain.glb, path: [{x_m: 3, y_m: 3}]}\n";
+
+TEST_F(ScenarioTest, MoversStandInOrderAndAreNoObjects) {
+  GltfWriter w;
+  w.show(w.cube(), {{"name", "anything"}});
+  put_file(folder.path() / "plain.glb", w.glb());
+  const Scenario scenario = load_scenario(write(kYaml + std::string(kMotion)));
+  const Scene scene = build_scene(scenario);
+  ASSERT_EQ(scene.movers.size(), 6u);
+  EXPECT_EQ(scene.movers[0].name, "plain");
+  EXPECT_EQ(scene.movers[3].name, "tool");
+  EXPECT_EQ(scene.movers[5].name, "plain");
+  EXPECT_EQ(scene.objects.size(), 2u);
+  for (const Mover& mover : scene.movers) {
+    ASSERT_EQ(mover.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[static_cast<std::size_t>(mover.instances[0])].object, -1);
+  }
+  EXPECT_EQ(scene.meshes.size(), 2u) << "copies share their mesh";
+  const std::string text = describe_scenario(scenario);
+  for (const char* part : {"second: 0.4 m/s", "2 x tool", "1 places", "at most 3"}) EXPECT_NE(text.find(part), std::string::npos) << text;
+
+  const std::string all = kYaml + std::string(kMotion);
+  EXPECT_ERROR(load_scenario(write(all, "{file: plain.glb, x_m: 1", "{file: plan.glb, x_m: 1")), "motion.streams.0.file", "no such file");
+  EXPECT_ERROR(load_scenario(write(all, "at_s: 2", "at_s: 1")), "motion.belts.0.changes", "in order");
+  EXPECT_ERROR(load_scenario(write(all, "path: [{x_m: 3, y_m: 3}]", "path: []")), "motion.walkers.0.path", "at least one");
+  EXPECT_ERROR(load_scenario(write(all, "most: 3", "most: 0")), "motion.streams.0.most", "1");
+  // A node that the file itself makes a true object cannot move.
+  GltfWriter classed;
+  classed.show(classed.cube(), {{"name", "c"}, {"extras", {{"waretwin", {{"class", "conveyor"}}}}}});
+  put_file(folder.path() / "plain.glb", classed.glb());
+  EXPECT_ERROR(build_scene(load_scenario(write(all))), "plain.glb", "no true object");
+}
+
 TEST_F(ScenarioTest, ErrorsNameFileLineAndKey) {
   put_file(folder.path() / "other.txt", "");
   EXPECT_ERROR(load_scenario(write(kYaml, "file: box.glb\n", "file: bax.glb\n")), "scenario.yaml:2", "models.0.file", "no such file");

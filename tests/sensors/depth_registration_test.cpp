@@ -16,7 +16,7 @@ namespace {
 struct Rig {
   CameraConfig camera;
   TimeOfFlightModel model{camera, 1, "camera"};
-  Pose X_CD = camera.time_of_flight.X_CD(camera.field.tilt_down_deg);
+  Pose X_CD = camera.X_CD();
   Intrinsics view = camera.intrinsics();
 
   // Native depth of whatever `distance` says along a ray from the depth lens, both in the colour camera's frame.

@@ -8,7 +8,6 @@
 
 #include "core/config.h"
 #include "core/files.h"
-#include "sensors/odometry_model.h"
 #include "sensors/recordings/text_formats.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
@@ -243,79 +242,6 @@ TEST_F(TumFolder, DamageIsNamed) {
   EXPECT_ERROR(open_recording(path()), "no colour picture with a depth image");
   fs::remove(path() / "depth.txt");
   EXPECT_ERROR(open_recording(path()), "depth.txt: no such file");
-}
-
-TEST_F(TumFolder, OurOwnFilesReadBackToTheSameBits) {
-  RecordingCalibration calibration;
-  calibration.has_camera = calibration.has_laser = true;
-  calibration.camera.width = 8;
-  calibration.camera.height = 6;
-  calibration.camera.fx = 612.3456789012345;
-  calibration.camera.fy = 612.1;
-  calibration.camera.cx = 3.5;
-  calibration.camera.cy = 2.5;
-  calibration.camera.name = "front";
-  Pose X_BC = make_upright_pose(0.1, 0.2, 1.4, 0.3);
-  X_BC.linear() = rotation_from_rpy(0.01, 0.7853981, 0.3) * optical_from_forward();
-  const Pose X_BL = make_upright_pose(0.275, 0.2, 0.3, 0.766);
-  const Pose X_WB = make_upright_pose(1.0 / 3, 2.0 / 7, 0, 1.1);
-  calibration.camera.X_BC = pose_numbers(X_BC);
-  calibration.laser.X_BL = pose_numbers(X_BL);
-  calibration.X_WB_start = pose_numbers(X_WB);
-  write("recording.yaml", write_config([&](Fields& f) { calibration.visit(f); }));
-
-  LaserScan scan;
-  scan.stamp = 1305031102'175304000;
-  scan.sensor = "laser";
-  scan.angle_min = -2.356194490192345;
-  scan.angle_increment = 0.008726646259971648;
-  scan.beam_interval = 55556;
-  scan.range_min = 0.05;
-  scan.range_max = 30;
-  scan.ranges = {0.0f, 1.23f, 29.99f, 0.1f};
-  OdometryModel odometry(OdometryConfig{}, 5, "odometry");
-  std::vector<OdometryReading> readings;
-  std::string odometry_text;
-  for (int i = 0; i < 50; ++i) {
-    readings.push_back(odometry.advance(1305031102'000000000 + i * 20'000'000, make_upright_pose(0.1 * i, 0.01 * i, 0, 0.05 * i)));
-    odometry_text += odometry_line(readings.back());
-  }
-  write("laser.txt", laser_line(scan));
-  write("odometry.txt", odometry_text);
-
-  const auto recording = open_recording(path());
-  const StreamInfo& info = recording->info();
-  EXPECT_EQ(info.cameras.at("front").X_BC.matrix(), X_BC.matrix());
-  EXPECT_EQ(info.cameras.at("front").intrinsics.fx, calibration.camera.fx);
-  EXPECT_EQ(info.lasers.at("laser").X_BL.matrix(), X_BL.matrix());
-  EXPECT_EQ(info.X_WB_start.matrix(), X_WB.matrix());
-  EXPECT_TRUE(info.has_odometry);
-  Stamp last = 0;
-  std::size_t odometry_count = 0;
-  int scans = 0;
-  while (const auto event = recording->next()) {
-    EXPECT_GE(stamp_of(*event), last);
-    last = stamp_of(*event);
-    if (const auto* reading = std::get_if<OdometryReading>(&*event)) {
-      ASSERT_LT(odometry_count, readings.size());
-      EXPECT_EQ(reading->stamp, readings[odometry_count].stamp);
-      EXPECT_EQ(reading->X_OB.matrix(), readings[odometry_count].X_OB.matrix());
-      ++odometry_count;
-    } else if (const auto* read = std::get_if<LaserScan>(&*event)) {
-      ++scans;
-      EXPECT_EQ(read->stamp, scan.stamp);
-      EXPECT_EQ(read->ranges, scan.ranges);
-      EXPECT_EQ(read->angle_min, scan.angle_min);
-      EXPECT_EQ(read->angle_increment, scan.angle_increment);
-      EXPECT_EQ(read->beam_interval, scan.beam_interval);
-      EXPECT_EQ(read->range_max, scan.range_max);
-    } else {
-      // Of equal stamps the scan comes first.
-      EXPECT_EQ(scans, 1);
-    }
-  }
-  EXPECT_EQ(odometry_count, readings.size());
-  EXPECT_EQ(scans, 1);
 }
 
 TEST(LaserLog, PlaysWithoutACameraAndNamesDamage) {

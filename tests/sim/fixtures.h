@@ -117,6 +117,16 @@ inline Light point_light(const Eigen::Vector3f& position, float candela, float r
   return light;
 }
 
+// A retroreflective square across the x axis, `size` wide and high, its right lower corner at (x, y, z); dark by itself.
+inline int add_marker(Scene& scene, const Eigen::Vector3f& corner, float size, float retroreflection) {
+  const int material = add_material(scene, {0.05f, 0.05f, 0.05f});
+  scene.materials.back().retroreflection = retroreflection;
+  Mesh marker;
+  const Eigen::Vector3f left(0.0f, size, 0.0f), up(0.0f, 0.0f, size);
+  add_quad(marker, corner, corner + up, corner + up + left, corner + left);
+  return add_instance(scene, add_mesh(scene, marker, material));
+}
+
 // A room seen from inside: floor at z = 0, walls at the given distances from the origin.
 inline Scene room(float x0, float x1, float y0, float y1, float height, const Eigen::Vector3f& colour = {0.7f, 0.7f, 0.7f}) {
   Scene scene;

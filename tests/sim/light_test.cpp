@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "sensors/tone_curve.h"
 #include "sim/direct_light.h"
 #include "sim/path_tracer.h"
 #include "sim/renderer.h"
 #include "sim/surfaces.h"
-#include "sim/tone_curve.h"
 #include "tests/sim/fixtures.h"
 
 namespace waretwin {
@@ -174,6 +174,59 @@ TEST(PathTracer, ClosedFurnaceRoomStaysAtOne) {
   Scene scene = fixtures::room(-2, 3, -2, 2, 2.5f, {base, base, base});
   scene.materials[0].emissive = {0.5f, 0.5f, 0.5f};
   EXPECT_NEAR(mean_radiance(scene, 20000, 100), 1.0, 0.02);
+}
+
+// A closed room whose walls emit and reflect so much that radiance is 1 everywhere, seen by a camera in quality path: the mean of every
+// block of 8 x 8 pixels.
+void expect_furnace(Scene scene, int bounces, const std::string& what) {
+  scene.ambient = scene.background = {0, 0, 0};
+  RenderOptions options;
+  options.quality = "path";
+  options.bounces = bounces;
+  options.samples = 200;
+  Renderer renderer(fixtures::caster_of(std::move(scene)), options);
+  RenderRequest request;
+  request.colour = false;
+  request.radiance = true;
+  Pose X_WC = Pose::Identity();
+  X_WC.linear() = rotation_from_rpy(0.0, 0.3, 0.2) * optical_from_forward();
+  X_WC.translation() = Eigen::Vector3d(-1.5, 0.2, 1.6);
+  const cv::Mat radiance = renderer.render(Intrinsics::from_field_of_view(40, 24, to_radians(90), to_radians(59)), X_WC, request).radiance;
+  for (int top = 0; top < 24; top += 8) {
+    for (int left = 0; left < 40; left += 8) {
+      cv::Vec4d sum(0, 0, 0, 0);
+      for (int v = top; v < top + 8; ++v) {
+        for (int u = left; u < left + 8; ++u) sum += cv::Vec4d(radiance.at<cv::Vec4f>(v, u));
+      }
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / 64.0, 1.0, 0.02) << what << ", block at " << left << " " << top << ", colour " << c;
+    }
+  }
+}
+
+// Walls of roughness 1 whose albedo, both layers together, is rho: the glossy one's does not depend on the direction there.
+Scene furnace(float rho) {
+  const float glossy = 0.04f * 0.4524f - 0.0024f;
+  const float base = (rho - glossy) / (1.0f - glossy);
+  Scene scene = fixtures::room(-2, 3, -2, 2, 2.5f, {base, base, base});
+  scene.materials[0].emissive = Eigen::Vector3f::Constant(1.0f - rho);
+  return scene;
+}
+
+TEST(PathTracer, EveryPartOfAFurnaceRoomStaysAtOne) {
+  // With few bounces the series 1 + rho + rho^2 ... ends early: at rho = 0.4 it lacks rho^5 = 1 % after the default of four.
+  expect_furnace(furnace(0.4f), RenderOptions().bounces, "four bounces");
+  expect_furnace(furnace(0.5f), 100, "rho 0.5");
+  expect_furnace(furnace(0.8f), 400, "rho 0.8");
+}
+
+TEST(PathTracer, WhiteGlossyThingsVanishInAFurnaceRoom) {
+  for (const float roughness : {0.1f, 0.4f, 1.0f}) {
+    Scene scene = furnace(0.5f);
+    const int white = add_material(scene, {1, 1, 1}, roughness);
+    add_instance(scene, add_mesh(scene, fixtures::unit_sphere(24), white), placed({0.5f, 0.3f, 1}, {0.6f, 0.6f, 0.6f}));
+    add_instance(scene, add_mesh(scene, fixtures::unit_box(), white), placed({-0.5f, -1.5f, 0.1f}, {0.7f, 0.8f, 0.9f}, 0.4f));
+    expect_furnace(std::move(scene), 400, "roughness " + std::to_string(roughness));
+  }
 }
 
 TEST(PathTracer, WhiteThingsVanishInUniformLight) {

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/parallel.h"
-#include "sim/frame_images.h"
+#include "sim/colour_camera.h"
 #include "sim/pixel_extent.h"
 #include "sim/renderer.h"
 #include "tests/sim/fixtures.h"
@@ -373,6 +373,48 @@ TEST(ObjectViews, TakeAnyRays) {
     }
   }
   EXPECT_GE(listed, 10);
+}
+
+// A real camera's picture, taken row by row through its lens while it drives past a post that moves: the rays give the labels of the
+// picture to the pixel, and what is seen is a part of what is covered.
+TEST(ObjectViews, AgreeWithTheColourCamera) {
+  Scene scene = busy_hall(8);
+  const int post = add_instance(scene, add_mesh(scene, unit_box(), add_material(scene, {1, 0, 0})));
+  const auto caster = std::make_shared<RayCaster>(std::make_shared<const Scene>(std::move(scene)));
+  caster->set_shutter(0, 50'000'000);
+  caster->set_motion(post, placed({-1.2f, -1.5f, 0}, {0.1f, 0.1f, 1.5f}), placed({-1.0f, -1.5f, 0}, {0.1f, 0.1f, 1.5f}));
+  caster->commit();
+  Renderer renderer(caster, {});
+  constexpr Stamp kStamp = 25'000'000;
+  int seen = 0, hidden = 0;
+  for (const bool rectify : {true, false}) {
+    CameraConfig config = CameraConfig::make("azure_kinect");
+    config.width = 320;
+    config.height = 180;
+    config.colour.rectify = rectify;
+    ASSERT_TRUE(config.colour.rolling_shutter);
+    ColourCamera camera(config, 1, "camera", renderer);
+    const auto X_WC = [](Stamp stamp) {
+      const double t = to_seconds(stamp);
+      Pose X_BC = Pose::Identity();
+      X_BC.linear() = rotation_from_rpy(0, 0.5, 0) * optical_from_forward();
+      X_BC.translation().z() = 1.3;
+      return make_upright_pose(-1.0 + 1.0 * t, 0.3, 0, -1.5 + 2.0 * t) * X_BC;
+    };
+    const cv::Mat instances = camera.look(kStamp, X_WC, false).instances;
+    const PictureRays rays = camera.picture_rays(kStamp, X_WC);
+    EXPECT_EQ(cv::norm(labels(*caster, rays), instances, cv::NORM_L1), 0.0);
+    const PictureRays pinhole = pinhole_rays(rays.intrinsics, X_WC(kStamp), 0.5f);
+    EXPECT_GT(cv::countNonZero(labels(*caster, pinhole) != instances), 20) << "the effects are there";
+    for (const ObjectView& view : object_views(*caster, rays, instances)) {
+      expect_as_alone(*caster, rays, view);
+      EXPECT_EQ(cv::countNonZero((instances == view.id) & ~in_picture(view, instances.size())), 0);
+      seen += view.visible_px > 0 ? 1 : 0;
+      hidden += view.occluded() > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(seen, 2);
+  EXPECT_GE(hidden, 1);
 }
 
 TEST(ObjectViews, AreTheSameAtAnyNumberOfThreads) {

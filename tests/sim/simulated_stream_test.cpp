@@ -131,6 +131,32 @@ TEST(SimulatedStream, DepthIsWholeMillimetresWithinTheRange) {
   }
 }
 
+TEST(SimulatedStream, UnrectifiedFramesAreInTheLensThroughout) {
+  Scenario scenario = drive();
+  CameraConfig& camera = scenario.sensors.cameras.at("camera");
+  camera.colour.rectify = false;
+  SimulatedStream stream(scenario, hall(), SimulationConfig());
+  EXPECT_EQ(stream.info().cameras.at("camera").intrinsics.fx, camera.colour_lens().intrinsics().fx);
+  EXPECT_LT(stream.info().cameras.at("camera").intrinsics.fx, camera.intrinsics().fx);
+  while (auto event = stream.next()) {
+    auto* frame = std::get_if<RgbdFrame>(&*event);
+    if (frame == nullptr) continue;
+    load_pictures(*frame);
+    int measured = 0, off = 0;
+    for (int v = 0; v < 90; ++v) {
+      for (int u = 0; u < 160; ++u) {
+        const float z = frame->depth.at<float>(v, u);
+        if (z == 0.0f) continue;
+        ++measured;
+        off += std::abs(z - stream.last_frame_truth().ideal_depth.at<float>(v, u)) > 0.03f ? 1 : 0;
+      }
+    }
+    EXPECT_GT(measured, 2000);
+    EXPECT_LT(off, measured / 50);
+    break;
+  }
+}
+
 TEST(SimulatedStream, TruthDepthAndNoColour) {
   SimulationConfig config;
   config.truth_depth = true;

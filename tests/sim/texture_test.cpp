@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sensors/tone_curve.h"
 #include "sim/texture_sampler.h"
 
 namespace waretwin {

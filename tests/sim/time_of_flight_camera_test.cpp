@@ -281,6 +281,27 @@ TEST(TimeOfFlightCamera, AFlatFloorHasNoMultipath) {
   EXPECT_EQ(std::memcmp(a.data, b.data, a.total() * a.elemSize()), 0);
 }
 
+// A sheet of 220 times a white surface's light saturates the pixel over the whole range; the wall around it is read as ever.
+TEST(TimeOfFlightCamera, RetroreflectorsSaturate) {
+  for (const float wall : {0.8f, 2.0f, 3.5f}) {
+    for (const float gain : {0.0f, 220.0f}) {
+      Scene scene = fixtures::room(-1, wall, -4, 4, 3);
+      fixtures::add_marker(scene, {wall - 0.001f, -0.1f * wall, 1.0f - 0.1f * wall}, 0.2f * wall, gain);
+      CameraConfig camera;
+      camera.time_of_flight.multipath = false;
+      const Rig rig(std::move(scene), camera);
+      const TimeOfFlightSignal signal = rig.look(standing(looking({0, 0, 1})));
+      const cv::Mat depth = rig.model.read(signal, 0);
+      if (gain > 0.0f) {
+        EXPECT_NEAR(signal.signal.at<float>(288, 320), gain / (wall * wall), 0.02 * gain / (wall * wall)) << wall;
+      }
+      // The dark sheet without its glass is too dark at 3.5 m.
+      EXPECT_EQ(depth.at<float>(288, 320) == 0.0f, gain > 0.0f || wall > 3.0f) << wall << " " << gain;
+      EXPECT_NEAR(depth.at<float>(288, 440), wall, 0.02) << wall;
+    }
+  }
+}
+
 TEST(TimeOfFlightCamera, IsTheSameAtAnyThreadCountAndAfterOtherPictures) {
   CameraConfig camera;
   const Rig rig(fixtures::busy_hall(8), camera);

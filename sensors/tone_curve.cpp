@@ -1,11 +1,9 @@
-#include "sim/tone_curve.h"
+#include "sensors/tone_curve.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-
-#include "sim/texture_sampler.h"
 
 namespace waretwin {
 
@@ -37,12 +35,24 @@ std::array<std::uint8_t, kSteps> make_table() {
 
 const std::array<std::uint8_t, kSteps> kTable = make_table();
 
-}  // namespace
-
-std::uint8_t tone_mapped(float radiance) {
+inline std::uint8_t looked_up(float radiance) {
   if (!(radiance > kBlack)) return 0;
   if (radiance >= kWhite) return 255;
   return kTable[index_of(radiance) - kFirst];
+}
+
+}  // namespace
+
+std::uint8_t srgb_from_linear(float value) {
+  const double x = std::clamp(static_cast<double>(value), 0.0, 1.0);
+  const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(s * 255.0));
+}
+
+std::uint8_t tone_mapped(float radiance) { return looked_up(radiance); }
+
+void tone_mapped(const float* radiances, std::size_t count, std::uint8_t* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = looked_up(radiances[i]);
 }
 
 }  // namespace waretwin

@@ -1,0 +1,107 @@
+#include "harness/run/record.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/staged_folder.h"
+#include "core/version.h"
+#include "harness/run/run_config.h"
+#include "harness/score/trajectory_file.h"
+#include "harness/truth/true_list.h"
+#include "sensors/recordings/recording_writer.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder is replaced as a whole, so nothing but an earlier recording of a simulation may stand in it: a mistyped --out must not cost
+// anybody's files, and a real recording cannot be made again.
+void expect_replaceable(const fs::path& folder) {
+  static const std::set<std::string> ours = {
+      "rgb",        "depth",       "depth_native",         "rgb.txt",       "depth.txt", "depth_native.txt", "laser.txt", "odometry.txt",
+      "truth.json", "config.yaml", "trajectory_truth.tum", "recording.yaml"};
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw Error(folder, "is a file; expected a folder or a new name");
+  if (fs::is_empty(folder)) return;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!ours.contains(name)) {
+      throw Error(folder, "holds '" + name +
+                              "', which is no part of a simulated recording; expected a new name, an empty folder or an earlier recording");
+    }
+  }
+  for (const char* name : {"recording.yaml", "trajectory_truth.tum"}) {
+    if (!fs::exists(folder / name)) {
+      throw Error(folder, "holds no " + std::string(name) +
+                              ", as a simulated recording does; expected a new name, an empty folder or an earlier recording");
+    }
+  }
+}
+
+}  // namespace
+
+void RecordConfig::visit(Fields& f) {
+  scenario.visit(f);
+  f.group("simulation", simulation, "how the sensors are simulated");
+}
+
+RecordConfig load_record_config(const fs::path& scenario, const SimulationConfig& simulation, const std::vector<Setting>& settings) {
+  RecordConfig config{load_scenario(scenario), simulation};
+  if (!settings.empty()) apply_settings(settings, [&](Fields& f) { config.visit(f); });
+  return config;
+}
+
+RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const fs::path& folder,
+                           const std::string& source, const std::function<void(double, const RecordSummary&)>& progress) {
+  expect_replaceable(folder);
+  SimulatedStream stream(config.scenario, scene, config.simulation);
+  const StreamInfo& info = stream.info();
+  calibration_of(info);  // throws before anything is written
+  std::unique_ptr<SurfaceCoverage> coverage;
+  if (!info.cameras.empty() && !scene->objects.empty()) {
+    coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), config.scenario.sensors.cameras, config.scenario.robot);
+  }
+
+  StagedFolder staged(folder);
+  RecordConfig resolved = config;
+  write_file(staged.path() / "config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, source));
+  RecordingWriter writer(staged.path(), info, "waretwin " + std::string(kVersion) + ", " + source);
+  GrowingFile truth(staged.path() / "trajectory_truth.tum");
+  RecordSummary summary;
+  std::optional<Stamp> first, last;
+  while (auto event = stream.next()) {
+    const Stamp stamp = stamp_of(*event);
+    if (!first) first = stamp;
+    if (last != stamp) truth.append(tum_text({{stamp, stream.true_X_WB(stamp)}}));
+    last = stamp;
+    if (auto* frame = std::get_if<RgbdFrame>(&*event)) {
+      load_pictures(*frame);
+      writer.add(*frame);
+      if (coverage) coverage->add_frame(frame->sensor, stream.last_frame_truth().X_WC);
+      ++summary.frames;
+    } else if (const auto* scan = std::get_if<LaserScan>(&*event)) {
+      writer.add(*scan);
+      ++summary.scans;
+    } else {
+      writer.add(std::get<OdometryReading>(*event));
+      ++summary.readings;
+    }
+    summary.duration_s = to_seconds(*last - *first);
+    if (!progress) continue;
+    double done = info.duration_s && *info.duration_s > 0.0 ? summary.duration_s / *info.duration_s : 0.0;
+    if (info.frame_count && *info.frame_count > 0) done = std::max(done, static_cast<double>(summary.frames) / *info.frame_count);
+    progress(std::min(done, 1.0), summary);
+  }
+  writer.finish();
+  truth.close();
+  write_file(staged.path() / "truth.json", truth_json(true_list(*scene, coverage.get())));
+  expect_replaceable(folder);
+  staged.commit();
+  return summary;
+}
+
+}  // namespace waretwin

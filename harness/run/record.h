@@ -1,0 +1,43 @@
+// A simulated drive as a recording on disk.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "scenes/scenario.h"
+#include "sim/simulated_stream.h"
+
+namespace waretwin {
+
+// What a recording depends on, under the same keys as in RunConfig.
+struct RecordConfig {
+  Scenario scenario;
+  SimulationConfig simulation;
+  void visit(Fields& f);
+};
+
+// Reads a scenario, then the settings over the whole tree.
+RecordConfig load_record_config(const std::filesystem::path& scenario, const SimulationConfig& simulation,
+                                const std::vector<Setting>& settings);
+
+struct RecordSummary {
+  int frames = 0, scans = 0, readings = 0;  // camera frames, laser scans, odometry readings
+  double duration_s = 0.0;                  // from the first event to the last
+};
+
+// Drives the whole route (or simulation.max_frames camera frames) through `scene`, which is config.scenario's (build_scene), and writes
+// what the sensors measured into `folder` (sensors/recordings/recording_writer.h). Beside it, for scoring and for nobody who maps:
+//   truth.json            true cuboids with the share that the recorded frames saw
+//   trajectory_truth.tum  the true X_WB at every event
+//   config.yaml           scenario and simulation, resolved; `waretwin run SCENARIO --config` takes it
+// The folder appears when all is written. An earlier recording of ours is then replaced; throws Error for a folder that holds anything
+// else, for what the layout cannot hold, and where the disk is full. `progress`, after each event: share of the drive that is done, and
+// the summary so far; what it throws ends the recording and leaves nothing behind.
+RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const std::filesystem::path& folder,
+                           const std::string& source, const std::function<void(double, const RecordSummary&)>& progress = {});
+
+}  // namespace waretwin

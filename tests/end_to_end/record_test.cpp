@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/end_to_end/program.h"
+
+namespace waretwin {
+namespace {
+
+using test::agiprobot;
+using test::TemporaryFolder;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string in_quotes(const fs::path& path) { return "'" + path.string() + "'"; }
+
+std::string digest_in(const std::string& text) {
+  const auto at = text.find("digest ");
+  return at == std::string::npos ? "none" : text.substr(at + 7, 16);
+}
+
+void record(const std::string& options, const fs::path& out) {
+  const auto result = test::waretwin("record " + agiprobot() + " --quiet --out " + in_quotes(out) + " " + options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+}
+
+// A recording into `out` that gets a signal as soon as its partial folder is there.
+test::ProgramResult stopped_by(const std::string& signal, const fs::path& out) {
+  const TemporaryFolder folder;
+  const std::string err = in_quotes(folder.path() / "err");
+  const std::string script = "'" WARETWIN_PROGRAM "' record " + agiprobot() + " --quiet --out " + in_quotes(out) + " 2>" + err +
+                             " & pid=$!; for i in $(seq 600); do ls " + in_quotes(out.string() + ".partial-") +
+                             "*/rgb.txt >/dev/null 2>&1 && break; sleep 0.1; done; kill -" + signal + " $pid; wait $pid";
+  const int status = std::system(script.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(folder.path() / "err")};
+}
+
+TEST(Record, MappedGivesTheDigestOfARun) {
+  const TemporaryFolder folder;
+  const fs::path drive = folder.path() / "drive", boxes = folder.path() / "boxes.json";
+  // One frame a second, so that the drive is long enough to see a conveyor.
+  const std::string options = "--frames 8 --seed 5 --set sensors.cameras.camera.rate_hz=1 ";
+  record(options, drive);
+  for (const char* name : {"rgb/000007.png", "depth/000007.png", "depth_native/000007.png", "rgb.txt", "depth.txt", "depth_native.txt",
+                           "laser.txt", "odometry.txt", "recording.yaml", "truth.json", "trajectory_truth.tum", "config.yaml"}) {
+    EXPECT_TRUE(fs::exists(drive / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(drive / "groundtruth.txt")) << "a mapper must not learn the true poses";
+
+  Json frames = Json::array();
+  for (int i = 0; i < 8; ++i) {
+    frames.push_back(
+        {{"stamp", i * 1'000'000'000LL}, {"detections", {{{"class", "conveyor"}, {"box", {400, 100, 500, 400}}, {"score", 0.9}}}}});
+  }
+  write_file(boxes, Json{{"frames", frames}}.dump());
+  for (const std::string mapping : {"--profile paper --detector none", "--profile best --detector none --rate 1"}) {
+    SCOPED_TRACE(mapping);
+    const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "run") + " " + options + mapping);
+    const auto map = test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "map") + " " + mapping);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(map.exit_code, 0) << map.err;
+    EXPECT_EQ(digest_in(run.out), digest_in(map.out));
+    EXPECT_EQ(digest_in(map.out).find_first_not_of("0123456789abcdef"), std::string::npos) << map.out;
+  }
+  // With boxes and with fewer frames than there are.
+  const std::string mapping = "--profile paper --frames 6 --detector " + in_quotes(boxes);
+  const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "run") +
+                                  " --seed 5 --set sensors.cameras.camera.rate_hz=1 " + mapping);
+  const auto map = test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "map") + " " + mapping);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(map.exit_code, 0) << map.err;
+  EXPECT_EQ(digest_in(run.out), digest_in(map.out));
+  EXPECT_EQ(read_file(folder.path() / "run/trajectory.tum"), read_file(folder.path() / "map/trajectory.tum"));
+  EXPECT_FALSE(Json::parse(read_file(folder.path() / "map/cuboids.json"))["objects"].empty()) << "a box must have become an object";
+
+  // The truth beside it scores both.
+  const auto score = test::waretwin("score " + in_quotes(folder.path() / "map") + " --truth " + in_quotes(drive / "truth.json"));
+  EXPECT_EQ(score.exit_code, 0) << score.err;
+  const auto ate =
+      test::waretwin("score " + in_quotes(folder.path() / "map/trajectory.tum") + " --truth " + in_quotes(drive / "trajectory_truth.tum"));
+  ASSERT_EQ(ate.exit_code, 0) << ate.err;
+  const auto of_run = Json::parse(read_file(folder.path() / "run/score.json"))["trajectory"]["ate_rmse_m"].get<double>();
+  EXPECT_NEAR(Json::parse(ate.out)["trajectory"]["ate_unaligned_rmse_m"].get<double>(), of_run, 1e-6);
+}
+
+TEST(Record, IsTheSameAtAnyNumberOfThreadsAndMapsWithoutItsTruth) {
+  const TemporaryFolder folder;
+  record("--frames 3 --threads 1", folder.path() / "1");
+  record("--frames 3 --threads 4", folder.path() / "4");
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "1")) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    const fs::path name = fs::relative(entry.path(), folder.path() / "1");
+    EXPECT_EQ(read_file(entry.path()), read_file(folder.path() / "4" / name)) << name;
+  }
+  EXPECT_EQ(files, 3 * 3 + 9);
+  const std::string map = " --quiet --profile paper --detector none --out " + in_quotes(folder.path() / "map");
+  const auto with = test::waretwin("map " + in_quotes(folder.path() / "1") + map);
+  for (const char* name : {"truth.json", "trajectory_truth.tum", "config.yaml"}) fs::remove(folder.path() / "1" / name);
+  const auto without = test::waretwin("map " + in_quotes(folder.path() / "1") + map);
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_EQ(digest_in(with.out), digest_in(without.out));
+}
+
+TEST(Record, ReplacesOnlyWhatItMade) {
+  const TemporaryFolder folder;
+  const fs::path drive = folder.path() / "drive";
+  record("--frames 2", drive);
+  record("--frames 1", drive);
+  EXPECT_FALSE(fs::exists(drive / "rgb/000001.png"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "nothing is left beside it";
+  const std::string again = "record " + agiprobot() + " --quiet --frames 1 --out ";
+  write_file(drive / "notes.txt", "mine");
+  EXPECT_ONE_LINE(test::waretwin(again + in_quotes(drive)), "notes.txt");
+  fs::remove(drive / "notes.txt");
+  fs::remove(drive / "trajectory_truth.tum");
+  EXPECT_ONE_LINE(test::waretwin(again + in_quotes(drive)), "trajectory_truth.tum");
+  EXPECT_TRUE(fs::exists(drive / "rgb/000000.png"));
+  write_file(folder.path() / "file", "mine");
+  EXPECT_ONE_LINE(test::waretwin(again + in_quotes(folder.path() / "file")), "is a file");
+  EXPECT_ONE_LINE(test::waretwin(again + "/proc/nowhere/drive"), "/proc/nowhere");
+}
+
+TEST(Record, LeavesNothingHalfWritten) {
+  const TemporaryFolder folder;
+  const fs::path drive = folder.path() / "drive";
+  record("--frames 1", drive);
+  const std::string before = read_file(drive / "rgb.txt");
+  // A limit on the size of files stands for a full disk.
+  const auto full =
+      test::waretwin("record " + agiprobot() + " --quiet --frames 2 --out " + in_quotes(drive), "ulimit -f 64; trap '' XFSZ;");
+  EXPECT_ONE_LINE(full, "cannot write");
+  // Stopped politely once it writes, it tidies up.
+  const auto stopped = stopped_by("TERM", drive);
+  EXPECT_EQ(stopped.exit_code, 2);
+  EXPECT_NE(stopped.err.find("stopped by signal"), std::string::npos) << stopped.err;
+  EXPECT_EQ(read_file(drive / "rgb.txt"), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "a partial folder is left";
+  // Killed outright, it leaves the half-written folder under another name than the result's.
+  const auto killed = stopped_by("KILL", folder.path() / "other");
+  EXPECT_EQ(killed.exit_code, 137);
+  EXPECT_FALSE(fs::exists(folder.path() / "other"));
+}
+
+TEST(Record, RefusesWhatItCannotHold) {
+  const TemporaryFolder copy;
+  fs::copy(test::repository() / "scenes/agiprobot", copy.path() / "hall", fs::copy_options::recursive);
+  const fs::path scenario = copy.path() / "hall/scenario.yaml";
+  std::string text = read_file(scenario);
+  text.replace(text.find("  lasers:\n"), 0,
+               "    rear:\n      preset: azure_kinect_gaussian\n      mount: {z_m: 1.4, yaw_deg: 180, pitch_deg: 45}\n");
+  write_file(scenario, text);
+  const std::string two = "record " + in_quotes(scenario) + " --quiet --frames 1 --out " + in_quotes(copy.path() / "drive");
+  EXPECT_ONE_LINE(test::waretwin(two), "sensors.cameras: camera, rear");
+  EXPECT_ONE_LINE(test::waretwin(two), "--camera NAME");
+  EXPECT_ONE_LINE(test::waretwin(two + " --camera front"), "--camera front");
+  EXPECT_FALSE(fs::exists(copy.path() / "drive")) << "bad input leaves nothing behind";
+  EXPECT_EQ(test::waretwin(two + " --camera rear").exit_code, 0);
+  EXPECT_NE(read_file(copy.path() / "drive/recording.yaml").find("name: rear"), std::string::npos);
+  EXPECT_ONE_LINE(test::waretwin("record nowhere.yaml --out o"), "nowhere.yaml");
+  EXPECT_ONE_LINE(test::waretwin("record " + agiprobot()), "--out");
+  EXPECT_ONE_LINE(test::waretwin("record " + agiprobot() + " --out o --format rosbag"), "rosbag");
+  EXPECT_ONE_LINE(test::waretwin("record " + agiprobot() + " --out o --set mapper.rate_hz=1"), "mapper");
+}
+
+// The keys that a drive was recorded with come back from its pictures.
+TEST(InspectNoise, FindsTheNoiseThatADriveWasRecordedWith) {
+  const TemporaryFolder folder;
+  const fs::path drive = folder.path() / "drive", json = folder.path() / "noise.json";
+  record(
+      "--frames 30 --set sensors.cameras.camera.preset=azure_kinect_gaussian --set sensors.cameras.camera.noise.sigma_base_m=0.001 "
+      "--set sensors.cameras.camera.noise.sigma_per_m2=0.002 --set sensors.cameras.camera.noise.dropout_share=0.03 "
+      "--set sensors.cameras.camera.rate_hz=0.7 --set simulation.colour=false",
+      drive);
+  const auto result = test::waretwin("inspect " + in_quotes(drive) + " --noise --quiet --json " + in_quotes(json));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* words :
+       {"sigma_z = base + growth * z^2", "the gaussian law fits better", "sigma_per_m2:", "dropout_share:", "30 of 30 frames"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words << " is not in\n" << result.out;
+  }
+  const Json noise = Json::parse(read_file(json));
+  EXPECT_EQ(noise["view"], "registered");
+  EXPECT_NEAR(noise["gaussian"]["sigma_base_m"]["value"].get<double>(), 0.001, 0.15 * 0.001) << result.out;
+  EXPECT_NEAR(noise["gaussian"]["sigma_per_m2"]["value"].get<double>(), 0.002, 0.15 * 0.002) << result.out;
+  EXPECT_NEAR(noise["planar_missing_share"].get<double>(), 0.03, 0.003);
+  EXPECT_LT(std::abs(noise["correlation"].get<double>()), 0.05);
+}
+
+TEST(InspectNoise, MeasuresTheDepthCamerasOwnImages) {
+  const TemporaryFolder folder;
+  const fs::path drive = folder.path() / "drive", json = folder.path() / "noise.json";
+  record("--frames 20 --set sensors.cameras.camera.rate_hz=0.5 --set simulation.colour=false", drive);
+  const std::string command = "inspect " + in_quotes(drive) + " --noise --quiet --json " + in_quotes(json);
+  const auto own = test::waretwin(command + " --frames 10");
+  ASSERT_EQ(own.exit_code, 0) << own.err;
+  const Json native = Json::parse(read_file(json));
+  EXPECT_EQ(native["view"], "native");
+  EXPECT_EQ(native["used_frames"], 10);
+  EXPECT_EQ(native["width"], 640);
+  EXPECT_EQ(native["better_law"], "time_of_flight");
+  fs::remove(drive / "depth_native.txt");
+  const auto warped = test::waretwin(command);
+  ASSERT_EQ(warped.exit_code, 0) << warped.err;
+  EXPECT_NE(warped.out.find("depth_native.txt"), std::string::npos) << "interpolated depth is said to be so\n" << warped.out;
+  const Json registered = Json::parse(read_file(json));
+  EXPECT_EQ(registered["view"], "registered");
+  EXPECT_LT(registered["time_of_flight"]["noise_m"]["value"].get<double>(), native["time_of_flight"]["noise_m"]["value"].get<double>());
+}
+
+TEST(InspectNoise, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  EXPECT_ONE_LINE(test::waretwin("inspect nowhere --noise"), "nowhere");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + agiprobot() + " --noise"), "expected a recording's folder");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --noise"), "is no recording");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --frames 3"), "--noise");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --noise --frames 0"), "--frames");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --noise --reflectivity 7"), "--reflectivity");
+  write_file(folder.path() / "laser.txt", "0 -1 0.5 0 0.05 30 3 1 0 2\n");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --noise"), "no depth images");
+  EXPECT_ONE_LINE(test::waretwin("inspect " + in_quotes(folder.path()) + " --noise --set noise.frame=3"), "noise.frames");
+  const auto keys = test::waretwin("inspect " + in_quotes(folder.path()) + " --noise --keys");
+  EXPECT_EQ(keys.exit_code, 0) << keys.err;
+  EXPECT_NE(keys.out.find("max_structure"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace waretwin
