@@ -144,10 +144,14 @@ cv::Mat draw_truth(const cv::Mat& colour, const FrameTruth& truth, const std::ve
   for (const ObjectView& view : views) {
     const cv::Rect at = placed(view.amodal_box) & cv::Rect({}, image.size());
     if (at.empty()) continue;
+    const TrueObject& object = object_of(scene, view.id);
     char text[128];
-    std::snprintf(text, sizeof text, "%.40s %d: visible %.0f %%, occluded %.0f %%, truncated %.0f %%",
-                  object_of(scene, view.id).class_name.c_str(), view.id, 100.0 * view.visible(), 100.0 * view.occluded(),
-                  100.0 * view.truncated());
+    if (view.amodal_px == 0) {
+      std::snprintf(text, sizeof text, "%d", view.id);  // there may be many of them, far away
+    } else {
+      std::snprintf(text, sizeof text, "%.40s %d: visible %.0f %%, occluded %.0f %%, truncated %.0f %%", object.class_name.c_str(), view.id,
+                    100.0 * view.visible(), 100.0 * view.occluded(), 100.0 * view.truncated());
+    }
     const int width = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.5, 1, nullptr).width;
     draw_text(image, {std::clamp(at.x, 4, std::max(4, image.cols - width - 4)), std::clamp(at.y - 6, 14, image.rows - 6)}, text,
               cv::Scalar::all(255));
