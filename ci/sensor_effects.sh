@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs profile `paper` on the AgiProbot hall with each effect of the depth camera switched off in turn, and prints the table that stands in
-# docs/sensors.md. Half a minute a row.
+# Runs profile `paper` on the AgiProbot hall with each effect of the sensors and of the drive switched off in turn, and prints the table that
+# stands in docs/sensors.md. Half a minute a row.
 #   ci/sensor_effects.sh [OUT] [RUN OPTIONS...]      results go to OUT/NAME (default: out/sensor_effects)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,5 +26,12 @@ row nothing "$@"
 for effect in lens_distortion noise wiggle mixed_pixels motion multipath invalidation; do
   row "$effect" --set "sensors.cameras.camera.time_of_flight.$effect=false" "$@"
 done
+for effect in lens_distortion rolling_shutter motion_blur noise vignetting white_balance; do
+  row "colour_$effect" --set "sensors.cameras.camera.colour.$effect=false" "$@"
+done
+row laser_width --set sensors.lasers.laser.spot.mixed=false "$@"
+row laser_dropouts --set sensors.lasers.laser.spot.dropouts=false "$@"
+row laser_noise --set sensors.lasers.laser.noise.enabled=false "$@"
+row wheels --set robot.drive.model=exact "$@"
 row gaussian --set sensors.cameras.camera.preset=azure_kinect_gaussian "$@"
 row all_error --depth truth "$@"

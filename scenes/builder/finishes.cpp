@@ -398,7 +398,9 @@ const std::map<std::string, Recipe>& recipes() {
        }},
       {"reflective_stripe",
        [] {
-         return plain({0.82, 0.83, 0.84}, 0, 0.4, 0.9);
+         Finish f = plain({0.82, 0.83, 0.84}, 0, 0.4, 0.9);
+         f.retroreflective = true;
+         return f;
        }},
       {"paper",
        [] {

@@ -33,9 +33,8 @@ std::vector<double> numbers(const Eigen::Vector3d& v) { return {rounded_json(v.x
 
 Eigen::Vector3d y_up(const Eigen::Vector3d& p) { return {p.x(), p.z(), -p.y()}; }
 
-Value waretwin_extras(const std::string& key, Value value) {
-  return Value(Value::Object{{"waretwin", Value(Value::Object{{key, std::move(value)}})}});
-}
+Value waretwin_extras(Value::Object ours) { return Value(Value::Object{{"waretwin", Value(std::move(ours))}}); }
+Value waretwin_extras(const std::string& key, Value value) { return waretwin_extras({{key, std::move(value)}}); }
 
 // The one buffer of a .glb, filled piece by piece.
 class Buffer {
@@ -197,7 +196,9 @@ std::string Model::to_glb(const std::string& title) const {
     m.emissiveFactor = numbers(finish.emissive);
     m.doubleSided = finish.double_sided;
     if (finish.alpha_mask) m.alphaMode = "MASK";
-    m.extras = waretwin_extras("reflectivity_850nm", Value(finish.reflectivity_850nm));
+    Value::Object extras{{"reflectivity_850nm", Value(finish.reflectivity_850nm)}};
+    if (finish.retroreflective) extras["retroreflective"] = Value(true);
+    m.extras = waretwin_extras(std::move(extras));
     if (!stored.image.empty()) {
       tinygltf::Image image;
       image.name = finish.name;

@@ -25,6 +25,7 @@ struct Finish {
   bool alpha_mask = false;                               // the texture's alpha cuts
   bool double_sided = false;
   double reflectivity_850nm = 0.5;
+  bool retroreflective = false;  // light goes back to where it came from
 };
 
 // The triangles of a mesh by material.
