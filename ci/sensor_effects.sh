@@ -26,9 +26,11 @@ row nothing "$@"
 for effect in lens_distortion noise wiggle mixed_pixels motion multipath invalidation; do
   row "$effect" --set "sensors.cameras.camera.time_of_flight.$effect=false" "$@"
 done
+colour=()
 for effect in lens_distortion rolling_shutter motion_blur noise vignetting white_balance; do
-  row "colour_$effect" --set "sensors.cameras.camera.colour.$effect=false" "$@"
+  colour+=(--set "sensors.cameras.camera.colour.$effect=false")
 done
+row colour "${colour[@]}" "$@"
 row laser_width --set sensors.lasers.laser.spot.mixed=false "$@"
 row laser_dropouts --set sensors.lasers.laser.spot.dropouts=false "$@"
 row laser_noise --set sensors.lasers.laser.noise.enabled=false "$@"

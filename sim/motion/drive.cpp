@@ -1,7 +1,9 @@
 #include "sim/motion/drive.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace waretwin {
 
@@ -92,17 +94,17 @@ void Drive::push_casters() {
   const double damping = kCasterDamping * 2.0 * std::sqrt(stiffness * 0.25 * d.mass_kg);
   const Pose X = X_WB();
   const Eigen::Vector3d centre_W = X * centre_of_mass_B_;
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      const Eigen::Vector3d foot_W =
-          X * Eigen::Vector3d(0.5 * kCasterAlong * x * config_.length_m, 0.5 * kCasterAcross * y * config_.width_m, 0.0);
-      const btVector3 arm = to_bullet(Eigen::Vector3d(foot_W - centre_W));
-      const double rise = body_->getVelocityInLocalPoint(arm).z();
-      const double force = preload - stiffness * foot_W.z() - damping * rise;
-      // As an impulse: Bullet's friction overlooks the torque of forces.
-      if (force > 0.0) body_->applyImpulse({0, 0, force * world_.step_s()}, arm);
-    }
+  // All are measured before the first one pushes.
+  std::array<std::pair<btVector3, double>, 4> pushes;
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    const double x = i % 2 == 0 ? -0.5 : 0.5, y = i / 2 == 0 ? -0.5 : 0.5;
+    const Eigen::Vector3d foot_W = X * Eigen::Vector3d(x * kCasterAlong * config_.length_m, y * kCasterAcross * config_.width_m, 0.0);
+    const btVector3 arm = to_bullet(Eigen::Vector3d(foot_W - centre_W));
+    const double rise = body_->getVelocityInLocalPoint(arm).z();
+    pushes[i] = {arm, std::max(preload - stiffness * foot_W.z() - damping * rise, 0.0)};
   }
+  // As impulses: Bullet's friction overlooks the torque of forces.
+  for (const auto& [arm, force] : pushes) body_->applyImpulse({0, 0, force * world_.step_s()}, arm);
 }
 
 void Drive::steer(const Pose& planned_X_WB, const Twist& planned) {

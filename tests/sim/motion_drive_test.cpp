@@ -55,6 +55,24 @@ TEST(Drive, FollowsItsRouteWithinACentimetre) {
   EXPECT_TRUE(motion.report().contacts.empty());
 }
 
+TEST(Drive, StandsLevelAndDipsByItsAcceleration) {
+  MotionScene hall = straight(6.0);
+  RobotConfig& robot = hall.scenario.robot;
+  robot.acceleration_mps2 = 0.5;
+  robot.speed_mps = 10.0;
+  const auto caster = hall.caster();
+  HallMotion motion(hall.scenario, *caster);
+  motion.advance_to(from_seconds(2.0));
+  const auto pitch = [&](Stamp at) { return std::asin(-motion.X_WB(at).linear()(2, 0)); };
+  EXPECT_NEAR(pitch(0), 0.0, 1e-7);
+  EXPECT_NEAR(motion.X_WB(0).translation().z(), 0.0, 1e-6);
+  // The traction pulls below the centre of mass; four springs at half the lever's length hold against it.
+  const double lever = 0.5 * 0.85 * robot.length_m;
+  const double stiffness = robot.drive.caster_share * robot.drive.mass_kg * 9.81 / 0.002;
+  const double tilt = robot.drive.mass_kg * robot.acceleration_mps2 * 0.5 * robot.height_m / (stiffness * lever * lever);
+  EXPECT_NEAR(pitch(from_seconds(1.8)), -tilt, 0.1 * tilt) << "its nose rises";
+}
+
 TEST(Drive, WheelsSlipByTractionOverStiffness) {
   // Speeding up evenly for the whole way, so that the traction is constant: T = m a, shared by both wheels, whose load is the weight less
   // what the casters carry.
