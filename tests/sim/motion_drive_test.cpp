@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "sim/motion/hall_motion.h"
 #include "sim/robot.h"
@@ -25,6 +26,19 @@ MotionScene straight(double length) {
   hall.scenario.robot.drive.model = "wheels";
   hall.scenario.robot.route = {at(0, 0), at(length, 0)};
   return hall;
+}
+
+// By how much more than it drove, as a share, the wheels turned between two times on the way along x.
+double slip_between(HallMotion& motion, double from_s, double to_s) {
+  const auto places = [&motion](double time_s) {
+    const Stamp at = from_seconds(time_s);
+    motion.advance_to(at);
+    return std::pair(motion.wheels_X_WB(at).translation().x(), motion.X_WB(at).translation().x());
+  };
+  const auto [reckoned_from, from] = places(from_s);
+  const auto [reckoned_to, to] = places(to_s);
+  const double reckoned = reckoned_to - reckoned_from;
+  return (reckoned - (to - from)) / reckoned;
 }
 
 TEST(Drive, FollowsItsRouteWithinACentimetre) {
@@ -85,13 +99,8 @@ TEST(Drive, WheelsSlipByTractionOverStiffness) {
     robot.drive.creep_stiffness = stiffness;
     const auto caster = hall.caster();
     HallMotion motion(hall.scenario, *caster);
-    const Stamp from = from_seconds(1.0), to = from_seconds(3.5);
-    motion.advance_to(from);
-    const double reckoned_before = motion.wheels_X_WB(from).translation().x(), before = motion.X_WB(from).translation().x();
-    motion.advance_to(to);
-    const double reckoned = motion.wheels_X_WB(to).translation().x() - reckoned_before, way = motion.X_WB(to).translation().x() - before;
     const double slip = robot.acceleration_mps2 / 9.81 / (1.0 - robot.drive.caster_share) / stiffness;
-    EXPECT_NEAR((reckoned - way) / reckoned, slip, 0.05 * slip) << "stiffness " << stiffness;
+    EXPECT_NEAR(slip_between(motion, 1.0, 3.5), slip, 0.05 * slip) << "stiffness " << stiffness;
   }
 }
 
@@ -103,14 +112,9 @@ TEST(Drive, ALoadFlattensItsTyres) {
   drive.creep_stiffness = 1e4;
   const auto caster = hall.caster();
   HallMotion motion(hall.scenario, *caster);
-  const Stamp from = from_seconds(3.0), to = from_seconds(12.0);
-  motion.advance_to(from);
-  const double reckoned_before = motion.wheels_X_WB(from).translation().x(), before = motion.X_WB(from).translation().x();
-  motion.advance_to(to);
-  const double reckoned = motion.wheels_X_WB(to).translation().x() - reckoned_before, way = motion.X_WB(to).translation().x() - before;
   // The wheels are rigid against the sprung casters, so they take the whole load, half each.
   const double flattened = 0.5 * drive.payload_kg * 9.81 / drive.tyre_stiffness_n_m / drive.wheel_radius_m;
-  EXPECT_NEAR((reckoned - way) / reckoned, flattened, 0.1 * flattened);
+  EXPECT_NEAR(slip_between(motion, 3.0, 12.0), flattened, 0.1 * flattened);
   EXPECT_GT(flattened, 0.01);
 }
 
