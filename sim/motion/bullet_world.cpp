@@ -106,10 +106,14 @@ btTransform to_bullet(const Pose& X) {
   return btTransform(rotation, to_bullet(Eigen::Vector3d(X.translation())));
 }
 
+Eigen::Quaterniond rotation_from_bullet(const btTransform& X) {
+  const btQuaternion q = X.getRotation();
+  return Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized();
+}
+
 Pose from_bullet(const btTransform& X) {
   Pose out = Pose::Identity();
-  const btQuaternion q = X.getRotation();
-  out.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
+  out.linear() = rotation_from_bullet(X).toRotationMatrix();
   out.translation() = from_bullet(X.getOrigin());
   return out;
 }

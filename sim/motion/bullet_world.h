@@ -23,6 +23,7 @@ inline btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z
 inline Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 btTransform to_bullet(const Pose& X);
 Pose from_bullet(const btTransform& X);
+Eigen::Quaterniond rotation_from_bullet(const btTransform& X);  // unit; from_bullet's is its matrix
 
 // How a contact point is to slide, seen from the body that carries the role.
 struct SurfaceMotion {

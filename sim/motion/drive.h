@@ -25,6 +25,7 @@ class Drive {
   void after_step();
 
   Pose X_WB() const;
+  Eigen::Quaterniond rotation_WB() const { return rotation_from_bullet(body_->getWorldTransform()); }  // unit; X_WB's is its matrix
   // What the wheels' turns say with the empty vehicle's radius and the track: pose since begin_reckoning in the frame O of where it stood
   // then.
   const Pose& reckoned_X_OB() const { return reckoned_X_OB_; }

@@ -1,6 +1,7 @@
 #include "sim/motion/hall_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -66,7 +67,18 @@ struct HallMotion::State {
     std::vector<std::pair<bool, Pose>> movers;  // present, X_WG
   };
   std::deque<Snapshot> recent;
-  std::vector<Pose> driven;  // X_WB after each step of the drive, from stamp 0 on
+  // X_WB after each step of the drive, from stamp 0 on: kept for the whole drive, so as small as it can be without losing a bit.
+  struct Driven {
+    std::array<double, 3> p;
+    std::array<double, 4> q;  // x, y, z, w; unit
+    Pose X_WB() const {
+      Pose X = Pose::Identity();
+      X.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+      X.translation() = Eigen::Vector3d(p[0], p[1], p[2]);
+      return X;
+    }
+  };
+  std::vector<Driven> driven;
   std::vector<RobotContact> contacts;
 
   double time_of(std::int64_t number) const { return static_cast<double>(number) / scenario.motion.step_hz; }
@@ -222,7 +234,11 @@ void HallMotion::State::record() {
   if (drive) {
     if (step == 0) drive->begin_reckoning();
     now.reckoned_X_WB = drive->reckoned_X_OB();
-    if (step >= 0) driven.push_back(drive->X_WB());
+    if (step >= 0) {
+      const Eigen::Vector3d p = drive->X_WB().translation();
+      const Eigen::Quaterniond q = drive->rotation_WB();
+      driven.push_back({{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}});
+    }
   }
   recent.push_back(std::move(now));
   while (stamp_of(step) - stamp_of(recent.front().step) > from_seconds(kKept_s)) recent.pop_front();
@@ -255,8 +271,8 @@ Pose HallMotion::X_WB(Stamp stamp) const {
   if (s.driven.empty()) return s.drive->X_WB();
   const double at = std::max(to_seconds(stamp), 0.0) * s.scenario.motion.step_hz;
   const auto before = static_cast<std::size_t>(std::floor(at));
-  if (before + 1 >= s.driven.size()) return s.driven.back();
-  return interpolate(s.driven[before], s.driven[before + 1], at - static_cast<double>(before));
+  if (before + 1 >= s.driven.size()) return s.driven.back().X_WB();
+  return interpolate(s.driven[before].X_WB(), s.driven[before + 1].X_WB(), at - static_cast<double>(before));
 }
 
 Pose HallMotion::wheels_X_WB(Stamp stamp) const {
