@@ -80,9 +80,8 @@ LaserConfig LaserConfig::make(const std::string& preset) {
   }
   if (preset == "hokuyo_utm30lx") {
     // Data sheet (Hokuyo UTM-30LX specification): 270 deg in steps of 0.25 deg, 25 ms a scan, 0.1 to 30 m, steps of 1 mm;
-    // accuracy
-    // +-30 mm up to 10 m and +-50 mm up to 30 m, repeated accuracy (one sigma) 10 mm and 30 mm. What the accuracy leaves beside the
-    // repeated one is 20 mm in both ranges: the systematic part. It names no larger error at reflectors.
+    // accuracy +-30 mm up to 10 m and +-50 mm up to 30 m, repeated accuracy (one sigma) 10 mm and 30 mm. What the accuracy leaves
+    // beside the repeated one is 20 mm in both ranges: the systematic part. It names no larger error at reflectors.
     laser.beams = 1081;
     laser.rate_hz = 40.0;
     laser.range_min_m = 0.1;

@@ -206,7 +206,9 @@ std::optional<SensorEvent> SimulatedStream::next() {
   }
   if (first->kind == SensorKind::kLaser) return s.scan(first->name, stamp);
   ++s.frames_sent;
-  const Stamp reach = std::max(kFrameReach, s.colour_cameras.at(first->name).half_span());
+  const TimeOfFlightConfig& depth = s.scenario.sensors.cameras.at(first->name).time_of_flight;
+  const Stamp reach =
+      std::max({kFrameReach, s.colour_cameras.at(first->name).half_span(), from_seconds(depth.motion ? 0.5 * depth.exposure_s : 0.0)});
   s.motion.advance_to(stamp + reach);
   s.truth = {};
   s.truth.stamp = stamp;

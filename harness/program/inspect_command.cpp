@@ -166,7 +166,7 @@ Command add_inspect_command(CLI::App& program) {
   command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
   command->add_option("--motion", options->motion_s, "of a scenario: runs what moves for S seconds, without sensors, and says how it went")
       ->type_name("S")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(number_from_to(0.1, 1e5));
   CLI::Option* noise = command->add_flag("--noise", options->noise,
                                          "of a recording: how far the depth camera's readings scatter about planes, by range and angle of "
                                          "incidence, and the laws that describe it");

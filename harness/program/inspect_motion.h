@@ -1,8 +1,6 @@
 // waretwin inspect SCENARIO --motion S: what moves, without sensors.
 #pragma once
 
-#include <memory>
-
 #include "scenes/scenario.h"
 
 namespace waretwin {

@@ -7,7 +7,7 @@
 
 namespace waretwin {
 
-// "the vehicle touched 'cabinet' at 12.40 s, at (1.05, -0.20, 0.31), with up to 840 N".
+// "the vehicle touched 'cabinet' at 12.40 s, at (1.05, -0.20, 0.31), for 0.25 s with up to 840 N".
 std::string contact_text(const RobotContact& contact);
 
 // A table of belts, what became of the items, and all contacts.

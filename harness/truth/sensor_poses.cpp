@@ -4,7 +4,7 @@ namespace waretwin {
 
 SensorPoses::SensorPoses(const SimulatedStream& stream, const SensorsConfig& sensors) : stream_(stream) {
   for (const auto& [name, camera] : sensors.cameras) {
-    if (camera.depth_model != "gaussian") X_CD_[name] = camera.X_CD();
+    if (stream.info().cameras.at(name).native) X_CD_[name] = camera.X_CD();
   }
 }
 

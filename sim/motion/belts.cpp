@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "core/error.h"
 
 namespace waretwin {
 
@@ -47,6 +50,10 @@ double Belt::wanted_speed(double time_s) const {
 Belts::Belts(BulletWorld& world, const RayCaster& ray_caster, const MotionConfig& config) {
   for (std::size_t i = 0; i < config.belts.size(); ++i) {
     for (BeltSurface& surface : find_belt_surfaces(ray_caster, config.belts[i], i)) {
+      if (is_belt(surface.object)) {
+        throw Error("motion.belts." + std::to_string(i) + ".object '" + config.belts[i].object + "' matches '" + surface.name +
+                    "', which an earlier belt names already");
+      }
       Belt& belt = belts_.emplace_back();
       belt.surface = std::move(surface);
       belt.config = config.belts[i];
@@ -115,13 +122,19 @@ void Belts::measure(Items& items, double step_s) {
     const bool alone = next - first == 1 && first->second == item.belt;
     if (!alone) end_ride(item);
     item.alone_s = alone ? item.alone_s + step_s : 0.0;
-    if (first != next) item.belt = first->second;
+    if (first != next && item.belt != first->second) {
+      item.belt = first->second;
+      // A belt that starts must find awake what lay on it while it stood.
+      item.body->setActivationState(DISABLE_DEACTIVATION);
+    }
     if (item.belt < 0) continue;
     Belt& belt = belts_[static_cast<std::size_t>(item.belt)];
     const Eigen::Vector3d p = item.middle();
     if (!belt.surface.carries(p.head<2>())) continue;
     if (!item.touched_floor && p.z() < belt.surface.top - kGuardDepth) {
-      ++items.counts().fell_through;
+      items.counts().fell_through += item.fell_through ? 0 : 1;
+      item.fell_through = true;
+      end_ride(item);
       item.belt = -1;
       continue;
     }

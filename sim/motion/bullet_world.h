@@ -65,7 +65,7 @@ class BulletWorld {
   btCollisionShape* hull(const std::vector<Eigen::Vector3d>& points);
   btCollisionShape* sphere(double radius);
   btCompoundShape* compound();
-  // mass 0: stands still, or follows set_kinematic. X_WS: the shape's frame, which for moving bodies is that of the centre of mass.
+  // mass 0: stands still, or is moved (make_kinematic). X_WS: the shape's frame, which for moving bodies is that of the centre of mass.
   btRigidBody* add_body(BodyRole& role, btCollisionShape* shape, const Pose& X_WS, double mass, double friction);
   void make_kinematic(btRigidBody& body);
   void move_kinematic(btRigidBody& body, const Pose& X_WS);  // where it is to be after the next step

@@ -18,11 +18,12 @@ namespace waretwin {
 
 namespace {
 
-constexpr double kKept_s = 0.5;  // how long movers' places are kept
+constexpr double kKept_s = 0.5;  // how long movers' places are kept beyond the longest turn of a laser
 constexpr Stamp kSameContact = kNanosecondsPerSecond;
 constexpr double kHallFriction = 0.6, kFloorFriction = 0.6;
 // The vehicle's floor is the plane z = 0; what is lower than this belongs to it (marks, sills), what is higher than that is out of reach.
 constexpr float kFloorHeight = 0.03f, kReach = 3.0f;
+constexpr double kBefore_s = 0.1;  // physics begins at least this long before the drive, so that the first frame's exposure is in it
 
 }  // namespace
 
@@ -48,6 +49,8 @@ struct HallMotion::State {
   Scenario scenario;
   RobotMotion plan;
   bool wheels;  // the drive model
+  double kept_s = kKept_s;
+  float reach_m = kReach;
   std::size_t mover_count;
   std::int64_t first_step = 0;  // number of the first step; step 0 begins with the drive
   std::int64_t step = 0;        // number of the step to come; it ends at (step + 1) / step_hz
@@ -64,7 +67,11 @@ struct HallMotion::State {
   struct Snapshot {
     std::int64_t step;  // that has just ended
     Pose reckoned_X_WB;
-    std::vector<std::pair<bool, Pose>> movers;  // present, X_WG
+    struct Place {
+      int stay = 0;  // 0 = not in the hall; another number is another item
+      Pose X_WG = Pose::Identity();
+    };
+    std::vector<Place> movers;
   };
   std::deque<Snapshot> recent;
   // X_WB after each step of the drive, from stamp 0 on: kept for the whole drive, so as small as it can be without losing a bit.
@@ -80,6 +87,12 @@ struct HallMotion::State {
   };
   std::vector<Driven> driven;
   std::vector<RobotContact> contacts;
+  struct Touch {  // of the last step, all points with one partner together
+    std::string with;
+    Eigen::Vector3d p_W;
+    double force_n;
+  };
+  std::vector<Touch> touches;
 
   double time_of(std::int64_t number) const { return static_cast<double>(number) / scenario.motion.step_hz; }
   Stamp stamp_of(std::int64_t number) const { return from_seconds(time_of(number)); }
@@ -88,7 +101,8 @@ struct HallMotion::State {
   void add_robot();
   void advance();
   void record();
-  void note_contact(const Eigen::Vector3d& p_W, const std::string& with, double force);
+  void note_touch(const Eigen::Vector3d& p_W, const std::string& with, double force);
+  void note_contacts();
   std::string name_of(const BodyRole& other, int part) const;
   std::pair<const Snapshot*, const Snapshot*> around(Stamp stamp, double& share) const;
 };
@@ -104,8 +118,13 @@ HallMotion::State::State(const Scenario& a_scenario, RayCaster& ray_caster)
   }
   ray_caster.commit();
   if (!wheels && motion.empty()) return;
-  double warm_up = motion.clutter.empty() ? 0.0 : motion.settle_s;
-  for (const ItemStream& stream : motion.streams) warm_up = std::max(warm_up, -stream.first_s);
+  for (const auto& [name, laser] : scenario.sensors.lasers) kept_s = std::max(kept_s, kKept_s + 1.0 / laser.rate_hz);
+  double warm_up = motion.clutter.empty() ? kBefore_s : std::max(kBefore_s, motion.settle_s);
+  for (const ItemStream& stream : motion.streams) {
+    warm_up = std::max(warm_up, -stream.first_s);
+    reach_m = std::max(reach_m, static_cast<float>(stream.z_m) + kReach);
+  }
+  for (const ClutterConfig& thing : motion.clutter) reach_m = std::max(reach_m, static_cast<float>(thing.z_m) + kReach);
   // The vehicle sinks into its casters.
   if (wheels) warm_up = std::max(warm_up, 0.5);
   first_step = step = -static_cast<std::int64_t>(std::ceil(warm_up * motion.step_hz));
@@ -146,7 +165,7 @@ void HallMotion::State::add_hall(const RayCaster& ray_caster) {
       Eigen::Vector3f corner[3];
       for (std::size_t k = 0; k < 3; ++k) corner[k] = instance.X_WM * mesh.positions[mesh.triangles[t + k]];
       const auto [low, high] = std::minmax({corner[0].z(), corner[1].z(), corner[2].z()});
-      if (high < kFloorHeight || low > kReach) continue;
+      if (high < kFloorHeight || low > reach_m) continue;
       for (const Eigen::Vector3f& p : corner) part.push_back(p.cast<double>());
     }
     if (part.empty()) continue;
@@ -167,7 +186,7 @@ void HallMotion::State::add_robot() {
   if (wheels) {
     drive = std::make_unique<Drive>(*world, scenario.robot, planned(0.0));
     drive->on_contact = [this](const Eigen::Vector3d& p_W, const BodyRole& other, int part, double impulse) {
-      note_contact(p_W, name_of(other, part), impulse / world->step_s());
+      note_touch(p_W, name_of(other, part), impulse / world->step_s());
     };
     return;
   }
@@ -176,7 +195,7 @@ void HallMotion::State::add_robot() {
   robot_role.name = "robot";
   const RobotConfig& robot = scenario.robot;
   robot_role.touched = [this](const Eigen::Vector3d& p_W, const BodyRole& other, int part, double normal, double) {
-    note_contact(p_W, name_of(other, part), normal / world->step_s());
+    note_touch(p_W, name_of(other, part), normal / world->step_s());
   };
   const double gap = std::min(0.05, 0.5 * robot.height_m);
   btCompoundShape* shape = world->compound();
@@ -195,16 +214,30 @@ std::string HallMotion::State::name_of(const BodyRole& other, int part) const {
   return name.empty() ? other.name : name;
 }
 
-void HallMotion::State::note_contact(const Eigen::Vector3d& p_W, const std::string& with, double force) {
-  const Stamp now = stamp_of(step + 1);
-  if (now < 0) return;
-  for (auto known = contacts.rbegin(); known != contacts.rend(); ++known) {
-    if (known->with != with || now - known->end > kSameContact) continue;
-    known->end = now;
-    known->force_n = std::max(known->force_n, force);
-    return;
+void HallMotion::State::note_touch(const Eigen::Vector3d& p_W, const std::string& with, double force) {
+  const auto known = std::find_if(touches.begin(), touches.end(), [&](const Touch& touch) { return touch.with == with; });
+  if (known == touches.end()) {
+    touches.push_back({with, p_W, force});
+  } else {
+    known->force_n += force;
   }
-  contacts.push_back({now, now, p_W, with, force});
+}
+
+void HallMotion::State::note_contacts() {
+  const Stamp now = stamp_of(step + 1);
+  for (const Touch& touch : touches) {
+    if (now < 0) break;
+    const auto known = std::find_if(contacts.rbegin(), contacts.rend(), [&](const RobotContact& contact) {
+      return contact.with == touch.with && now - contact.end <= kSameContact;
+    });
+    if (known == contacts.rend()) {
+      contacts.push_back({now, now, touch.p_W, touch.with, touch.force_n});
+    } else {
+      known->end = now;
+      known->force_n = std::max(known->force_n, touch.force_n);
+    }
+  }
+  touches.clear();
 }
 
 void HallMotion::State::advance() {
@@ -219,6 +252,7 @@ void HallMotion::State::advance() {
     world->move_kinematic(*exact_robot, planned(end_s));
   }
   world->step();
+  note_contacts();
   if (drive) drive->after_step();
   belts->measure(*items, world->step_s());
   items->take_out();
@@ -228,8 +262,10 @@ void HallMotion::State::advance() {
 
 void HallMotion::State::record() {
   Snapshot now{.step = step, .reckoned_X_WB = Pose::Identity(), .movers = {}};
-  for (const Item& item : items->all()) now.movers.emplace_back(item.present, item.present ? item.X_WG() : Pose::Identity());
-  for (std::size_t i = 0; i < walkers->count(); ++i) now.movers.emplace_back(true, walkers->X_WG(i, time_of(step)));
+  for (const Item& item : items->all()) {
+    now.movers.push_back(item.present ? Snapshot::Place{item.stay, item.X_WG()} : Snapshot::Place{});
+  }
+  for (std::size_t i = 0; i < walkers->count(); ++i) now.movers.push_back({1, walkers->X_WG(i, time_of(step))});
   WARETWIN_CHECK(now.movers.size() == mover_count, "every mover has a place");
   if (drive) {
     if (step == 0) drive->begin_reckoning();
@@ -241,7 +277,7 @@ void HallMotion::State::record() {
     }
   }
   recent.push_back(std::move(now));
-  while (stamp_of(step) - stamp_of(recent.front().step) > from_seconds(kKept_s)) recent.pop_front();
+  while (stamp_of(step) - stamp_of(recent.front().step) > from_seconds(kept_s)) recent.pop_front();
 }
 
 std::pair<const HallMotion::State::Snapshot*, const HallMotion::State::Snapshot*> HallMotion::State::around(Stamp stamp,
@@ -292,12 +328,14 @@ HallMoment HallMotion::moment(Stamp begin, Stamp end) const {
   const auto [e0, e1] = s.around(end, end_share);
   for (std::size_t i = 0; i < s.mover_count; ++i) {
     HallMoment::Place place;
-    // What comes or goes meanwhile is there when it is there at the end.
-    place.present = e1->movers[i].first;
+    // What comes or goes meanwhile is there when it is there at the end; before it came it stood where it came in.
+    const int stay = e1->movers[i].stay;
+    place.present = stay > 0;
     if (place.present) {
-      const auto at = [i](const State::Snapshot& a, const State::Snapshot& b, double share, const Pose& otherwise) {
-        if (!a.movers[i].first || !b.movers[i].first) return b.movers[i].first ? b.movers[i].second : otherwise;
-        return interpolate(a.movers[i].second, b.movers[i].second, share);
+      const auto at = [i, stay](const State::Snapshot& a, const State::Snapshot& b, double share, const Pose& otherwise) {
+        const bool in_a = a.movers[i].stay == stay, in_b = b.movers[i].stay == stay;
+        if (in_a && in_b) return interpolate(a.movers[i].X_WG, b.movers[i].X_WG, share);
+        return in_b ? b.movers[i].X_WG : otherwise;
       };
       const Pose last = at(*e0, *e1, end_share, Pose::Identity());
       place.X_WG_end = Eigen::Affine3d(last.matrix()).cast<float>();
@@ -347,9 +385,9 @@ std::string HallMotion::digest() const {
   digest.add(s.step);
   if (s.drive) add(s.drive->X_WB());
   if (!s.recent.empty()) {
-    for (const auto& [present, X] : s.recent.back().movers) {
-      digest.add(static_cast<std::int64_t>(present));
-      add(X);
+    for (const auto& place : s.recent.back().movers) {
+      digest.add(place.stay);
+      add(place.X_WG);
     }
   }
   return digest.hex();

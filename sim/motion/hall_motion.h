@@ -31,7 +31,7 @@ struct RobotContact {
   Stamp begin = 0, end = 0;                       // touches less than a second apart count as one
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  // where it began
   std::string with;                               // name of the node, item or walker
-  double force_n = 0.0;                           // largest
+  double force_n = 0.0;                           // largest, of all points that touch at the same time
 };
 
 struct BeltReport {

@@ -72,10 +72,11 @@ void Items::drop_clutter() {
       Pose X_WG = Pose::Identity();
       X_WG.linear() = turn.toRotationMatrix();
       X_WG.translation() = Eigen::Vector3d(thing.x_m + draw(3, thing.spread_x_m), thing.y_m + draw(4, thing.spread_y_m), height);
-      while (world_.would_touch(*item.body, X_WG * item.X_GS, BodyRole::kItem)) X_WG.translation().z() += kLayer_m;
+      while (world_.would_touch(*item.body, X_WG * item.X_GS, BodyRole::kItem | BodyRole::kWalker | BodyRole::kRobot))
+        X_WG.translation().z() += kLayer_m;
       height = X_WG.translation().z();
       world_.put_in(*item.body, X_WG * item.X_GS);
-      item.present = true;
+      item.begin_stay();
     }
   }
 }

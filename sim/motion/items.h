@@ -16,6 +16,8 @@ struct Item {
   Pose X_GS = Pose::Identity();  // centre of mass S in the model's frame G
   bool present = false;
   bool clutter = false;
+  int stay = 0;                // which stay in the hall this is: what comes in again is another item
+  bool fell_through = false;   // in this stay
   bool touched_floor = false;  // since it came in
   int belt = -1;               // index of the belt that last carried it; -1 = none yet
   double alone_s = 0.0;        // how long that belt alone has carried it
@@ -24,7 +26,8 @@ struct Item {
 
   void begin_stay() {
     present = true;
-    touched_floor = false;
+    ++stay;
+    fell_through = touched_floor = false;
     belt = -1;
     alone_s = ride_sum = 0.0;
     ride_samples = 0;
@@ -46,7 +49,7 @@ class Items {
   // Bodies are made and kept out of the world. `seed` is the scenario's.
   Items(BulletWorld& world, const Scene& scene, const MotionConfig& config, std::uint64_t seed);
 
-  // Drops all clutter; the world must hold nothing else that moves.
+  // Drops all clutter, above whatever moves there already.
   void drop_clutter();
   // Before a step: lets in what is due at `time_s`, where the place is free.
   void let_in(double time_s);

@@ -35,7 +35,7 @@ Walkers::Walkers(BulletWorld& world, const Scene& scene, const MotionConfig& con
     Walker& walker = walkers_.back();
     walker.role.group = BodyRole::kWalker;
     walker.role.name = mover.name;
-    // A box around all that is higher than a sill, so that feet don't stand in the floor.
+    // Walkers and the floor do not meet, so feet may stand in it.
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& p : vertices_G(scene, mover)) box.extend(p);
     btCompoundShape* shape = world.compound();
