@@ -62,6 +62,16 @@ Estimate estimate(const Fit& fit, Eigen::Index k) { return {fit.x[k], fit.x[k] -
 // Cells whose noise drowns in the rounding hold no figure to compare with.
 bool counts(const Estimate& sigma) { return sigma.value > 0.0 && sigma.high > sigma.low; }
 
+// Root mean square of the values over what the fit says of them, less 1.
+double relative_rms(const std::vector<Line>& lines, const Fit& fit) {
+  double squares = 0.0;
+  for (const Line& line : lines) {
+    const double relative = line.value / line.row.dot(fit.x) - 1.0;
+    squares += relative * relative;
+  }
+  return std::sqrt(squares / static_cast<double>(lines.size()));
+}
+
 }  // namespace
 
 double time_of_flight_shape(double signal, double background) { return std::sqrt(signal + background) / signal; }
@@ -111,12 +121,7 @@ std::optional<GaussianLaw> fit_gaussian_law(const std::vector<NoiseCell>& cells)
   law.base_m = estimate(*fit, 0);
   law.growth_per_m = estimate(*fit, 1);
   law.misfit = fit->misfit;
-  double squares = 0.0;
-  for (const Line& line : lines) {
-    const double relative = line.value / line.row.dot(fit->x) - 1.0;
-    squares += relative * relative;
-  }
-  law.relative_rms = std::sqrt(squares / static_cast<double>(lines.size()));
+  law.relative_rms = relative_rms(lines, *fit);
   return law;
 }
 
@@ -132,12 +137,7 @@ std::optional<TimeOfFlightLaw> fit_time_of_flight_law(const std::vector<NoiseCel
   TimeOfFlightLaw law;
   law.noise_m = estimate(*fit, 0);
   law.misfit = fit->misfit;
-  double squares = 0.0;
-  for (const Line& line : lines) {
-    const double relative = line.value / line.row.dot(fit->x) - 1.0;
-    squares += relative * relative;
-  }
-  law.relative_rms = std::sqrt(squares / static_cast<double>(lines.size()));
+  law.relative_rms = relative_rms(lines, *fit);
   return law;
 }
 

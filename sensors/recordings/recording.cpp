@@ -167,27 +167,28 @@ void visit_pose(Fields& f, const char* key, std::vector<double>& numbers, const 
   }
 }
 
+// Of a Camera or a Native.
+template <class Pinhole>
+void visit_intrinsics(Fields& f, Pinhole& camera) {
+  f("width", camera.width, "pixels", {.min = 1, .max = 16384, .required = true});
+  f("height", camera.height, "pixels", {.min = 1, .max = 16384, .required = true});
+  f("fx", camera.fx, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
+  f("fy", camera.fy, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
+  f("cx", camera.cx, "principal point in pixels", {.required = true});
+  f("cy", camera.cy, "principal point in pixels", {.required = true});
+}
+
 }  // namespace
 
 void RecordingCalibration::Native::visit(Fields& f) {
-  f("width", width, "pixels", {.min = 1, .max = 16384, .required = true});
-  f("height", height, "pixels", {.min = 1, .max = 16384, .required = true});
-  f("fx", fx, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
-  f("fy", fy, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
-  f("cx", cx, "principal point in pixels", {.required = true});
-  f("cy", cy, "principal point in pixels", {.required = true});
+  visit_intrinsics(f, *this);
   f.group("distortion", distortion, "of the lens");
   visit_pose(f, "X_CD", X_CD, "pose of the depth camera in the colour camera's frame, 3 x 4, row by row");
 }
 
 void RecordingCalibration::Camera::visit(Fields& f) {
   f("name", name, "the sensor's name");
-  f("width", width, "pixels", {.min = 1, .max = 16384, .required = true});
-  f("height", height, "pixels", {.min = 1, .max = 16384, .required = true});
-  f("fx", fx, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
-  f("fy", fy, "focal length in pixels", {.min = 1e-3, .max = 1e6, .required = true});
-  f("cx", cx, "principal point in pixels", {.required = true});
-  f("cy", cy, "principal point in pixels", {.required = true});
+  visit_intrinsics(f, *this);
   f("depth_min_m", depth_min_m, "nearer depth is not trusted", {.min = 0, .max = 100});
   f("depth_max_m", depth_max_m, "farther depth is not trusted", {.min = 0, .max = 100});
   f("depth_scale", depth_scale, "units of a depth image in one metre", {.min = 1e-3, .max = 1e6});

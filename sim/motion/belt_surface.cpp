@@ -191,9 +191,9 @@ Eigen::Vector2d BeltSurface::coordinates(const Eigen::Vector2d& p_W) const {
 
 double BeltSurface::speed_factor(const Eigen::Vector2d& p_W) const { return curve ? (p_W - pivot).norm() / radius : 1.0; }
 
-bool BeltSurface::carries(const Eigen::Vector2d& p_W, double margin) const {
+bool BeltSurface::carries(const Eigen::Vector2d& p_W) const {
   const Eigen::Vector2d at = coordinates(p_W);
-  return at.x() >= margin && at.x() <= length - margin && at.y() >= right + margin && at.y() <= left - margin;
+  return at.x() >= 0.0 && at.x() <= length && at.y() >= right && at.y() <= left;
 }
 
 std::vector<BeltSurface> find_belt_surfaces(const RayCaster& ray_caster, const BeltConfig& config, std::size_t index) {

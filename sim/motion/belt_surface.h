@@ -33,7 +33,7 @@ struct BeltSurface {
   Eigen::Vector2d coordinates(const Eigen::Vector2d& p_W) const;
   // Surface speed at `side` by that of the centre line: 1 on a straight belt, radius at the point over radius of the centre line on an arc.
   double speed_factor(const Eigen::Vector2d& p_W) const;
-  bool carries(const Eigen::Vector2d& p_W, double margin = 0.0) const;  // whether a point lies above the strip
+  bool carries(const Eigen::Vector2d& p_W) const;  // whether a point lies above the strip
 };
 
 // The running surfaces of all objects that the configuration names. Throws Error when it names none ("motion.belts.I.object ..."), and for

@@ -168,18 +168,14 @@ void BulletWorld::add_floor(BodyRole& role, double friction) {
 }
 
 void BulletWorld::add_triangles(BodyRole& role, const std::vector<std::vector<Eigen::Vector3d>>& parts, double friction) {
+  if (parts.empty()) return;
   auto mesh = std::make_unique<btTriangleIndexVertexArray>();
-  std::size_t triangles = 0;
   for (const std::vector<Eigen::Vector3d>& part : parts) {
     std::vector<btVector3>& vertices = world_->vertices.emplace_back();
     std::vector<int>& corners = world_->corners.emplace_back();
     for (const Eigen::Vector3d& p : part) vertices.push_back(to_bullet(p));
     for (std::size_t i = 0; i < part.size(); ++i) corners.push_back(static_cast<int>(i));
-    // Bullet refuses parts without triangles, but their numbers must stay: a point far below everything.
-    if (part.empty()) {
-      vertices.assign(3, btVector3(0, 0, -1000));
-      corners = {0, 1, 2};
-    }
+    WARETWIN_CHECK(!part.empty(), "Bullet takes no parts without triangles");
     btIndexedMesh indexed;
     indexed.m_numTriangles = static_cast<int>(corners.size() / 3);
     indexed.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(corners.data());
@@ -189,9 +185,7 @@ void BulletWorld::add_triangles(BodyRole& role, const std::vector<std::vector<Ei
     indexed.m_vertexStride = sizeof(btVector3);
     indexed.m_vertexType = PHY_DOUBLE;
     mesh->addIndexedMesh(indexed, PHY_INTEGER);
-    triangles += part.size() / 3;
   }
-  if (triangles == 0) return;
   add_body(role, world_->keep(std::make_unique<btBvhTriangleMeshShape>(mesh.get(), true)), Pose::Identity(), 0.0, friction);
   world_->meshes.push_back(std::move(mesh));
 }

@@ -58,7 +58,7 @@ class BulletWorld {
 
   // The infinite floor z = 0.
   void add_floor(BodyRole& role, double friction);
-  // Triangles that stand still, in the world frame; `parts` names a contact's part by its index.
+  // Triangles that stand still, in the world frame; a contact names its part by its index. No part is empty.
   void add_triangles(BodyRole& role, const std::vector<std::vector<Eigen::Vector3d>>& parts, double friction);
   // Shapes are kept by the world. Boxes by their full size; hulls by their points.
   btCollisionShape* box(const Eigen::Vector3d& size);

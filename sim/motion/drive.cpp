@@ -22,6 +22,12 @@ constexpr double kAlongGain = 2.0, kHeadingGain = 4.0, kSideGain = 8.0;
 
 }  // namespace
 
+Chassis::Chassis(const RobotConfig& config) {
+  const double gap = std::min(kClearance, 0.5 * config.height_m);
+  size = {config.length_m, config.width_m, config.height_m - gap};
+  middle_B = {0.0, 0.0, 0.5 * (config.height_m + gap)};
+}
+
 Drive::Drive(BulletWorld& world, const RobotConfig& config, const Pose& X_WB_start) : world_(world), config_(config) {
   const DriveConfig& d = config.drive;
   const double mass = d.mass_kg + d.payload_kg;
@@ -57,8 +63,8 @@ Drive::Drive(BulletWorld& world, const RobotConfig& config, const Pose& X_WB_sta
     X.translation() = p_B - centre_of_mass_B_;
     shape->addChildShape(to_bullet(X), part);
   };
-  const double floor_gap = std::min(kClearance, 0.5 * config.height_m);
-  add(world.box({config.length_m, config.width_m, config.height_m - floor_gap}), {0, 0, 0.5 * (config.height_m + floor_gap)});
+  const Chassis chassis(config);
+  add(world.box(chassis.size), chassis.middle_B);
   for (std::size_t i = 0; i < 2; ++i) {
     wheels_[i].offset_y_m = (i == 0 ? 0.5 : -0.5) * d.track_m;
     wheels_[i].load_n = empty_wheel_load_n_;
@@ -66,7 +72,7 @@ Drive::Drive(BulletWorld& world, const RobotConfig& config, const Pose& X_WB_sta
   }
   Pose X_WS = X_WB_start;
   X_WS.translation() += X_WB_start.linear() * centre_of_mass_B_;
-  body_ = world.add_body(role_, shape, X_WS, mass, 0.4);
+  body_ = world.add_body(role_, shape, X_WS, mass, Chassis::kFriction);
   // A solid box and a point, about their common centre.
   const auto squares = [](const Eigen::Vector3d& v) {
     return Eigen::Vector3d(v.y() * v.y() + v.z() * v.z(), v.x() * v.x() + v.z() * v.z(), v.x() * v.x() + v.y() * v.y());

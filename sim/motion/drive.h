@@ -9,6 +9,13 @@
 
 namespace waretwin {
 
+// The vehicle's body as a box, clear of the floor: what it touches with.
+struct Chassis {
+  explicit Chassis(const RobotConfig& config);
+  static constexpr double kFriction = 0.4;
+  Eigen::Vector3d size, middle_B;
+};
+
 // A wheel is a place of the body where the contact with the floor moves: forward at omega * R less what the tyre gives way. With load N and
 // traction T, both as Bullet's last step found them,
 //   speed at the contact = omega * (R - (N - N0) / tyre stiffness) - |omega R| * T / (creep stiffness * N)

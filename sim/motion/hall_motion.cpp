@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <map>
 
 #include "core/digest.h"
 #include "core/error.h"
@@ -18,7 +17,7 @@ namespace waretwin {
 
 namespace {
 
-constexpr double kKept_s = 0.5;  // how long movers' places are kept beyond the longest turn of a laser
+constexpr double kKept_s = 1.5;  // how long places are kept beyond the longest turn of a laser: longer than any exposure
 constexpr Stamp kSameContact = kNanosecondsPerSecond;
 constexpr double kHallFriction = 0.6, kFloorFriction = 0.6;
 // The vehicle's floor is the plane z = 0; what is lower than this belongs to it (marks, sills), what is higher than that is out of reach.
@@ -52,8 +51,7 @@ struct HallMotion::State {
   double kept_s = kKept_s;
   float reach_m = kReach;
   std::size_t mover_count;
-  std::int64_t first_step = 0;  // number of the first step; step 0 begins with the drive
-  std::int64_t step = 0;        // number of the step to come; it ends at (step + 1) / step_hz
+  std::int64_t step = 0;  // number of the step to come; it ends at (step + 1) / step_hz. Step 0 begins with the drive
   BodyRole floor_role, hall_role, conveyor_role, robot_role;
   std::vector<std::string> hall_parts, conveyor_parts;  // names of nodes by part
   // Nothing that needs physics: none of these.
@@ -127,7 +125,7 @@ HallMotion::State::State(const Scenario& a_scenario, RayCaster& ray_caster)
   for (const ClutterConfig& thing : motion.clutter) reach_m = std::max(reach_m, static_cast<float>(thing.z_m) + kReach);
   // The vehicle sinks into its casters.
   if (wheels) warm_up = std::max(warm_up, 0.5);
-  first_step = step = -static_cast<std::int64_t>(std::ceil(warm_up * motion.step_hz));
+  step = -static_cast<std::int64_t>(std::ceil(warm_up * motion.step_hz));
 
   world = std::make_unique<BulletWorld>(1.0 / motion.step_hz);
   floor_role.group = BodyRole::kFloor;
@@ -142,7 +140,7 @@ HallMotion::State::State(const Scenario& a_scenario, RayCaster& ray_caster)
   belts = std::make_unique<Belts>(*world, ray_caster, motion);
   add_hall(ray_caster);
   items = std::make_unique<Items>(*world, ray_caster.scene(), motion, scenario.seed);
-  walkers = std::make_unique<Walkers>(*world, ray_caster.scene(), motion, time_of(first_step));
+  walkers = std::make_unique<Walkers>(*world, ray_caster.scene(), motion, time_of(step));
   add_robot();
   items->drop_clutter();
   record();
@@ -193,16 +191,15 @@ void HallMotion::State::add_robot() {
   // It follows its route whatever stands there; what can move gives way.
   robot_role.group = BodyRole::kRobot;
   robot_role.name = "robot";
-  const RobotConfig& robot = scenario.robot;
   robot_role.touched = [this](const Eigen::Vector3d& p_W, const BodyRole& other, int part, double normal, double) {
     note_touch(p_W, name_of(other, part), normal / world->step_s());
   };
-  const double gap = std::min(0.05, 0.5 * robot.height_m);
+  const Chassis chassis(scenario.robot);
   btCompoundShape* shape = world->compound();
   Pose X_BS = Pose::Identity();
-  X_BS.translation().z() = 0.5 * (robot.height_m + gap);
-  shape->addChildShape(to_bullet(X_BS), world->box({robot.length_m, robot.width_m, robot.height_m - gap}));
-  exact_robot = world->add_body(robot_role, shape, planned(0.0), 0.0, 0.4);
+  X_BS.translation() = chassis.middle_B;
+  shape->addChildShape(to_bullet(X_BS), world->box(chassis.size));
+  exact_robot = world->add_body(robot_role, shape, planned(0.0), 0.0, Chassis::kFriction);
   world->make_kinematic(*exact_robot);
 }
 

@@ -19,13 +19,7 @@ using fixtures::add_material;
 using fixtures::add_mesh;
 using fixtures::add_object;
 using fixtures::caster_of;
-
-Pose looking(const Eigen::Vector3d& p_W, double yaw = 0.0, double pitch = 0.0) {
-  Pose X_WC = Pose::Identity();
-  X_WC.linear() = rotation_from_rpy(0.0, pitch, yaw) * optical_from_forward();
-  X_WC.translation() = p_W;
-  return X_WC;
-}
+using fixtures::looking;
 
 // All effects off but what a test asks for.
 CameraConfig quiet(int width = 640, int height = 360) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/pose.h"
 #include "scenes/scene.h"
 #include "sim/ray_caster.h"
 
@@ -186,6 +187,14 @@ inline Scene busy_hall(int detail) {
   scene.ambient = {0.35f, 0.36f, 0.38f};
   scene.background = {0.1f, 0.1f, 0.12f};
   return scene;
+}
+
+// A camera at p_W that looks along the world's x axis turned by yaw, down by pitch and over by roll (radians).
+inline Pose looking(const Eigen::Vector3d& p_W, double yaw = 0.0, double pitch = 0.0, double roll = 0.0) {
+  Pose X_WC = Pose::Identity();
+  X_WC.linear() = rotation_from_rpy(roll, pitch, yaw) * optical_from_forward();
+  X_WC.translation() = p_W;
+  return X_WC;
 }
 
 inline std::shared_ptr<const RayCaster> caster_of(Scene scene) {

@@ -19,17 +19,10 @@ using fixtures::add_material;
 using fixtures::add_mesh;
 using fixtures::add_object;
 using fixtures::caster_of;
+using fixtures::looking;
 using fixtures::placed;
 
 Intrinsics small_camera() { return Intrinsics::from_field_of_view(203, 151, to_radians(80), to_radians(60)); }
-
-// A camera at p_W that looks along the world's x axis turned by yaw and down by pitch.
-Pose looking(const Eigen::Vector3d& p_W, double yaw = 0.0, double pitch = 0.0, double roll = 0.0) {
-  Pose X_WC = Pose::Identity();
-  X_WC.linear() = rotation_from_rpy(roll, pitch, yaw) * optical_from_forward();
-  X_WC.translation() = p_W;
-  return X_WC;
-}
 
 FrameImages geometry(const std::shared_ptr<const RayCaster>& caster, const Intrinsics& intrinsics, const Pose& X_WC) {
   RenderRequest request;

@@ -19,14 +19,8 @@ using fixtures::add_instance;
 using fixtures::add_material;
 using fixtures::add_mesh;
 using fixtures::caster_of;
+using fixtures::looking;
 using fixtures::placed;
-
-Pose looking(const Eigen::Vector3d& p_W, double yaw = 0.0, double pitch = 0.0) {
-  Pose X_WD = Pose::Identity();
-  X_WD.linear() = rotation_from_rpy(0.0, pitch, yaw) * optical_from_forward();
-  X_WD.translation() = p_W;
-  return X_WD;
-}
 
 TimeOfFlightCamera::PulsePoses standing(const Pose& X_WD) {
   TimeOfFlightCamera::PulsePoses poses;
