@@ -83,10 +83,11 @@ Command add_record_command(CLI::App& program) {
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin record scenes/agiprobot/scenario.yaml --out out/drive\n"
-      "  waretwin map out/drive --out out/map --detector boxes.json\n"
+      "  waretwin map out/drive --out out/map --detector out/drive/truth_boxes.json\n"
       "  waretwin score out/map --truth out/drive/truth.json\n\n"
       "Mapped with the same profile and detector, the recording gives the same digest as `waretwin run`. truth.json,\n"
-      "trajectory_truth.tum and config.yaml are for scoring and repeating; `map` never reads them. A frame takes about 1.7 MB.");
+      "trajectory_truth.tum and config.yaml are for scoring and repeating; `map` never reads them. truth_boxes.json holds the boxes of\n"
+      "`run --detector truth`. A frame takes about 1.7 MB.");
   return {command, [options] { return record(*options); }};
 }
 

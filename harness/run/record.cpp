@@ -1,6 +1,7 @@
 #include "harness/run/record.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
@@ -21,9 +22,19 @@ namespace {
 // A folder is replaced as a whole, so nothing but an earlier recording of a simulation may stand in it: a mistyped --out must not cost
 // anybody's files, and a real recording cannot be made again.
 void expect_replaceable(const fs::path& folder) {
-  static const std::set<std::string> ours = {
-      "rgb",        "depth",       "depth_native",         "rgb.txt",       "depth.txt", "depth_native.txt", "laser.txt", "odometry.txt",
-      "truth.json", "config.yaml", "trajectory_truth.tum", "recording.yaml"};
+  static const std::set<std::string> ours = {"rgb",
+                                             "depth",
+                                             "depth_native",
+                                             "rgb.txt",
+                                             "depth.txt",
+                                             "depth_native.txt",
+                                             "laser.txt",
+                                             "odometry.txt",
+                                             "truth.json",
+                                             "config.yaml",
+                                             "trajectory_truth.tum",
+                                             "truth_boxes.json",
+                                             "recording.yaml"};
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) throw Error(folder, "is a file; expected a folder or a new name");
   if (fs::is_empty(folder)) return;
@@ -42,15 +53,25 @@ void expect_replaceable(const fs::path& folder) {
   }
 }
 
+// One frame of the file that BoxesDetector reads.
+std::string boxes_entry(Stamp stamp, const std::vector<Detection>& detections) {
+  nlohmann::json entry = {{"stamp", stamp}, {"detections", nlohmann::json::array()}};
+  for (const Detection& d : detections) {
+    entry["detections"].push_back({{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}});
+  }
+  return entry.dump();
+}
+
 }  // namespace
 
 void RecordConfig::visit(Fields& f) {
   scenario.visit(f);
   f.group("simulation", simulation, "how the sensors are simulated");
+  f.group("truth_detector", truth_detector, "which objects get a true box");
 }
 
 RecordConfig load_record_config(const fs::path& scenario, const SimulationConfig& simulation, const std::vector<Setting>& settings) {
-  RecordConfig config{load_scenario(scenario), simulation};
+  RecordConfig config{load_scenario(scenario), simulation, {}};
   if (!settings.empty()) apply_settings(settings, [&](Fields& f) { config.visit(f); });
   return config;
 }
@@ -71,6 +92,8 @@ RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<con
   write_file(staged.path() / "config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, source));
   RecordingWriter writer(staged.path(), info, "waretwin " + std::string(kVersion) + ", " + source);
   GrowingFile truth(staged.path() / "trajectory_truth.tum");
+  GrowingFile boxes(staged.path() / "truth_boxes.json");
+  TruthDetector detector(stream, config.truth_detector);
   RecordSummary summary;
   std::optional<Stamp> first, last;
   while (auto event = stream.next()) {
@@ -81,6 +104,7 @@ RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<con
     if (auto* frame = std::get_if<RgbdFrame>(&*event)) {
       load_pictures(*frame);
       writer.add(*frame);
+      boxes.append((summary.frames == 0 ? "{\"frames\":[\n" : ",\n") + boxes_entry(stamp, detector.detect(*frame)));
       if (coverage) coverage->add_frame(frame->sensor, stream.last_frame_truth().X_WC);
       ++summary.frames;
     } else if (const auto* scan = std::get_if<LaserScan>(&*event)) {
@@ -98,6 +122,8 @@ RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<con
   }
   writer.finish();
   truth.close();
+  boxes.append(summary.frames == 0 ? "{\"frames\":[]}\n" : "\n]}\n");
+  boxes.close();
   write_file(staged.path() / "truth.json", truth_json(true_list(*scene, coverage.get())));
   expect_replaceable(folder);
   staged.commit();

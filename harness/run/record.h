@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "harness/truth/truth_detector.h"
 #include "scenes/scenario.h"
 #include "sim/simulated_stream.h"
 
@@ -17,6 +18,7 @@ namespace waretwin {
 struct RecordConfig {
   Scenario scenario;
   SimulationConfig simulation;
+  TruthDetectorConfig truth_detector;
   void visit(Fields& f);
 };
 
@@ -32,6 +34,7 @@ struct RecordSummary {
 // Drives the whole route (or simulation.max_frames camera frames) through `scene`, which is config.scenario's (build_scene), and writes
 // what the sensors measured into `folder` (sensors/recordings/recording_writer.h). Beside it, for scoring and for nobody who maps:
 //   truth.json            true cuboids with the share that the recorded frames saw
+//   truth_boxes.json      the true boxes of every frame, as `waretwin map --detector` takes them: what `run --detector truth` maps with
 //   trajectory_truth.tum  the true X_WB at every event
 //   config.yaml           scenario and simulation, resolved; `waretwin run SCENARIO --config` takes it
 // The folder appears when all is written. An earlier recording of ours is then replaced; throws Error for a folder that holds anything

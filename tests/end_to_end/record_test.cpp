@@ -41,8 +41,9 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   // One frame a second, so that the drive is long enough to see a conveyor.
   const std::string options = "--frames 8 --seed 5 --set sensors.cameras.camera.rate_hz=1 ";
   record(options, drive);
-  for (const char* name : {"rgb/000007.png", "depth/000007.png", "depth_native/000007.png", "rgb.txt", "depth.txt", "depth_native.txt",
-                           "laser.txt", "odometry.txt", "recording.yaml", "truth.json", "trajectory_truth.tum", "config.yaml"}) {
+  for (const char* name :
+       {"rgb/000007.png", "depth/000007.png", "depth_native/000007.png", "rgb.txt", "depth.txt", "depth_native.txt", "laser.txt",
+        "odometry.txt", "recording.yaml", "truth.json", "trajectory_truth.tum", "truth_boxes.json", "config.yaml"}) {
     EXPECT_TRUE(fs::exists(drive / name)) << name;
   }
   EXPECT_FALSE(fs::exists(drive / "groundtruth.txt")) << "a mapper must not learn the true poses";
@@ -73,6 +74,15 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   EXPECT_EQ(read_file(folder.path() / "run/trajectory.tum"), read_file(folder.path() / "map/trajectory.tum"));
   EXPECT_FALSE(Json::parse(read_file(folder.path() / "map/cuboids.json"))["objects"].empty()) << "a box must have become an object";
 
+  // The true boxes stand beside the recording: with them it maps as a run with the true detector does.
+  const std::string short_run = " --profile paper --frames 8 --seed 5 --set sensors.cameras.camera.rate_hz=1 --detector truth";
+  const auto true_run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "true_run") + short_run);
+  const auto true_map = test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "true_map") +
+                                       " --profile paper --detector " + in_quotes(drive / "truth_boxes.json"));
+  ASSERT_EQ(true_run.exit_code, 0) << true_run.err;
+  ASSERT_EQ(true_map.exit_code, 0) << true_map.err;
+  EXPECT_EQ(digest_in(true_run.out), digest_in(true_map.out));
+
   // The truth beside it scores both.
   const auto score = test::waretwin("score " + in_quotes(folder.path() / "map") + " --truth " + in_quotes(drive / "truth.json"));
   EXPECT_EQ(score.exit_code, 0) << score.err;
@@ -97,7 +107,7 @@ TEST(Record, IsTheSameAtAnyNumberOfThreadsAndMapsWithoutItsTruth) {
   EXPECT_EQ(files, 3 * 3 + 9);
   const std::string map = " --quiet --profile paper --detector none --out " + in_quotes(folder.path() / "map");
   const auto with = test::waretwin("map " + in_quotes(folder.path() / "1") + map);
-  for (const char* name : {"truth.json", "trajectory_truth.tum", "config.yaml"}) fs::remove(folder.path() / "1" / name);
+  for (const char* name : {"truth.json", "truth_boxes.json", "trajectory_truth.tum", "config.yaml"}) fs::remove(folder.path() / "1" / name);
   const auto without = test::waretwin("map " + in_quotes(folder.path() / "1") + map);
   EXPECT_EQ(without.exit_code, 0) << without.err;
   EXPECT_EQ(digest_in(with.out), digest_in(without.out));
