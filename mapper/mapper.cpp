@@ -1,5 +1,6 @@
 #include "mapper/mapper.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -33,13 +34,26 @@ Pose world_from_recording(const StreamInfo& info) {
 }
 
 // Labels the pixels of each object with its map id. Where boxes overlap, the earlier object keeps the pixel.
-std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const std::vector<int>& map_ids, std::size_t pixel_count) {
+// `margin` (metres; negative: any): a pixel farther outside the mapped object's cuboid shows something else in the box.
+std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const std::vector<int>& map_ids, const ObjectList& map,
+                                       double margin, std::size_t pixel_count) {
   std::vector<std::int32_t> labels;
   for (std::size_t i = 0; i < segmentation.objects.size(); ++i) {
     if (map_ids[i] == 0) continue;
     if (labels.empty()) labels.assign(pixel_count, 0);
-    for (const int pixel : segmentation.objects[i].pixels) {
-      std::int32_t& label = labels[static_cast<std::size_t>(pixel)];
+    const SegmentedObject& object = segmentation.objects[i];
+    const auto mapped = std::find_if(map.begin(), map.end(), [&](const MappedObject& m) { return m.id == map_ids[i]; });
+    const bool bounded = margin >= 0.0 && mapped != map.end();
+    Eigen::Matrix3f R_OW = Eigen::Matrix3f::Identity();
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero(), half = Eigen::Vector3f::Zero();
+    if (bounded) {
+      R_OW = mapped->cuboid.pose().linear().transpose().cast<float>();
+      centre = mapped->cuboid.centre.cast<float>();
+      half = (0.5 * mapped->cuboid.size + Eigen::Vector3d::Constant(margin)).cast<float>();
+    }
+    for (std::size_t k = 0; k < object.pixels.size(); ++k) {
+      if (bounded && ((R_OW * (object.points_W[k] - centre)).array().abs() > half.array()).any()) continue;
+      std::int32_t& label = labels[static_cast<std::size_t>(object.pixels[k])];
       if (label == 0) label = map_ids[i];
     }
   }
@@ -67,7 +81,13 @@ void Mapper::consume(SensorEvent event) {
   std::visit([this](auto& measurement) { take(std::move(measurement)); }, event);
 }
 
-ObjectMap Mapper::finish() { return std::exchange(map_, ObjectMap{}); }
+ObjectMap Mapper::finish() {
+  stages_.associator->finish(map_.objects);
+  if (map_.volume) {
+    for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
+  }
+  return std::exchange(map_, ObjectMap{});
+}
 
 void Mapper::take(const OdometryReading& reading) {
   Stopwatch watch;
@@ -130,12 +150,15 @@ void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport rep
   const Segmentation segmentation = stages_.segmenter->segment(frame, intrinsics, detections, X_WC);
   report.segment_ms = watch.lap();
 
-  const AssociationContext context = {.frame_id = report.frame_id, .stamp = frame.stamp, .X_WC = X_WC, .intrinsics = intrinsics};
+  const AssociationContext context = {
+      .frame_id = report.frame_id, .stamp = frame.stamp, .X_WC = X_WC, .intrinsics = intrinsics, .depth = frame.depth};
   const std::vector<int> map_ids = stages_.associator->associate(segmentation.objects, context, map_.objects);
   for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
   report.associate_ms = watch.lap();
 
-  stages_.integrator->integrate(frame, intrinsics, label_pixels(segmentation, map_ids, frame.depth.total()), X_WC, *map_.volume);
+  stages_.integrator->integrate(frame, intrinsics,
+                                label_pixels(segmentation, map_ids, map_.objects, config_.label_margin_m, frame.depth.total()), X_WC,
+                                *map_.volume);
   report.integrate_ms = watch.lap();
 
   report.detections = static_cast<int>(detections.size());

@@ -12,9 +12,8 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     return config;
   }
   if (profile == "best") {
-    // An object that comes back into view is the one that was there before, and its box is where its cuboid now appears.
-    config.associate.iou2d_mode = "projected";
-    config.associate.max_frame_gap = 0;
+    config.objects = "evidence";
+    config.label_margin_m = 0.015;
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper or best");
@@ -31,10 +30,16 @@ void MapperConfig::visit(Fields& f) {
     {.choices = {"yolo", "boxes", "none"}});
   f("model", model, "detector: a folder, a .cfg, .weights or .onnx file");
   f("boxes", boxes, "JSON file with boxes by frame stamp");
+  f("objects", objects, "how objects come about: accumulated points, as published, or the evidence of all rays",
+    {.choices = {"points", "evidence"}});
+  f("label_margin_m", label_margin_m,
+    "pixels this far outside their mapped object's cuboid get no label; below 0: all of a box's object get it", {.min = -1, .max = 10});
   f.group("localise", localise, "laser localisation");
   f.group("detect", detect, "the detector's network");
   f.group("segment", segment, "from boxes to object points and cuboids");
-  f.group("associate", associate, "which mapped object a segmented one is");
+  f.group("rays", rays, "objects: evidence; what one frame tells");
+  f.group("associate", associate, "objects: points; which mapped object a segmented one is");
+  f.group("evidence", evidence, "objects: evidence; which mapped object a detection is, and its cuboid");
   f.group("integrate", integrate, "the labelled TSDF volume");
 }
 

@@ -5,24 +5,30 @@
 
 #include "core/fields.h"
 #include "mapper/associate/associate_config.h"
+#include "mapper/associate/evidence_config.h"
 #include "mapper/detect/detect_config.h"
 #include "mapper/integrate/tsdf_config.h"
 #include "mapper/localise/laser_icp_config.h"
+#include "mapper/segment/evidence_rays_config.h"
 #include "mapper/segment/segment_config.h"
 
 namespace waretwin {
 
 struct MapperConfig {
   std::string profile = "best";
-  double rate_hz = 0.0;           // frames mapped a second, those in between are dropped; 0 = every frame
-  std::string poses = "auto";     // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
-  std::string detector = "none";  // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
-  std::string model;              // folder, .cfg, .weights or .onnx file
-  std::string boxes;              // JSON file with boxes by frame stamp
+  double rate_hz = 0.0;            // frames mapped a second, those in between are dropped; 0 = every frame
+  std::string poses = "auto";      // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
+  std::string detector = "none";   // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
+  std::string model;               // folder, .cfg, .weights or .onnx file
+  std::string boxes;               // JSON file with boxes by frame stamp
+  std::string objects = "points";  // how objects come about: "points" as published, "evidence" of all rays
+  double label_margin_m = -1.0;    // pixels farther outside their object's cuboid get no label; below 0: all get it
   LaserIcpConfig localise;
   DetectConfig detect;
   SegmentConfig segment;
+  EvidenceRaysConfig rays;
   AssociateConfig associate;
+  EvidenceConfig evidence;
   TsdfConfig integrate;
 
   // The constants of a profile: paper or best. Throws Error naming the known ones.

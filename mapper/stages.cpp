@@ -3,12 +3,14 @@
 #include <string>
 
 #include "core/error.h"
+#include "mapper/associate/evidence_associator.h"
 #include "mapper/associate/paper_associator.h"
 #include "mapper/detect/boxes_detector.h"
 #include "mapper/detect/yolo_detector.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/localise/laser_icp_localiser.h"
 #include "mapper/localise/simple_localisers.h"
+#include "mapper/segment/evidence_segmenter.h"
 #include "mapper/segment/paper_segmenter.h"
 
 namespace waretwin {
@@ -48,12 +50,21 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
 
 }  // namespace
 
+std::unique_ptr<Associator> make_associator(const MapperConfig& config) {
+  if (config.objects == "evidence") return std::make_unique<EvidenceAssociator>(config.evidence);
+  return std::make_unique<PaperAssociator>(config.associate);
+}
+
 Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
   Stages stages;
   stages.localiser = make_localiser(config, info);
   stages.detector = make_detector(config);
-  stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
-  stages.associator = std::make_unique<PaperAssociator>(config.associate);
+  if (config.objects == "evidence") {
+    stages.segmenter = std::make_unique<EvidenceSegmenter>(config.segment, config.rays, info);
+  } else {
+    stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
+  }
+  stages.associator = make_associator(config);
   stages.integrator = std::make_unique<GroupedRayIntegrator>(config.integrate);
   return stages;
 }

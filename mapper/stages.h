@@ -25,6 +25,9 @@ struct Stages {
 // What `poses` means for a stream: auto is laser where it has scans, else recorded, else odometry.
 std::string chosen_poses(const MapperConfig& config, const StreamInfo& info);
 
+// The associator that a configuration names: which mapped object is which, and how objects are updated.
+std::unique_ptr<Associator> make_associator(const MapperConfig& config);
+
 // The stages that a configuration names. Throws Error where a model file is missing or the stream lacks what a stage needs (laser poses
 // without scans).
 Stages make_stages(const MapperConfig& config, const StreamInfo& info);

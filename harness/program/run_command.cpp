@@ -9,6 +9,7 @@
 #include "harness/program/common_options.h"
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
+#include "harness/run/budget.h"
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/number_text.h"
@@ -21,6 +22,7 @@ struct RunOptions {
   CommonOptions common;
   MappingOptions mapping;
   std::string scenario, out;
+  bool budget = false;
   std::string poses, depth = "sensor", association = "map";
 };
 
@@ -74,7 +76,17 @@ int run(const RunOptions& options) {
   write_closed_loop(*folder, result);
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
-  std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json)\n";
+  for (const Explanation& line : result.score.objects.explanations) {
+    std::cout << (line.truth_id ? "object " + std::to_string(*line.truth_id) : "mapped object " + std::to_string(*line.map_id)) << ": "
+              << line.text << "\n";
+  }
+  if (options.budget) {
+    Progress progress("budget", options.common.quiet);
+    const std::vector<BudgetRow> rows = run_budget(config, scene, result.truth, [&](double done) { progress.update(done, ""); });
+    folder->write("budget.md", budget_text(rows, result.score.scenario + ", profile " + result.score.profile));
+  }
+  std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json"
+            << (options.budget ? ", budget.md)\n" : ")\n");
   if (!result.score.motion || result.score.motion->contacts.empty()) return 0;
   // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
   for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));
@@ -95,6 +107,8 @@ Command add_run_command(CLI::App& program) {
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
   command->add_option("--association", options->association, "map or truth")->capture_default_str()->check(CLI::IsMember({"map", "truth"}));
+  command->add_flag("--budget", options.budget,
+                    "drives once more and maps with the truth in place of each stage in turn: budget.md says what each stage costs");
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->common.add_to(*command);
   command->footer(

@@ -172,7 +172,7 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   page.pictures = write_map(folder, result.mapping, std::move(scene));
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
-  folder.remove("truth_frames.jsonl");
+  for (const char* earlier : {"truth_frames.jsonl", "budget.md"}) folder.remove(earlier);
   if (!result.truth_frames.empty()) folder.write("truth_frames.jsonl", result.truth_frames);
   for (const char* part : {"truth_poses", "truth_poses/cameras", "truth_poses/lasers"}) folder.clear(part);
   for (const auto& [name, poses] : result.sensor_poses) folder.write("truth_poses/" + name, tum_text(poses));

@@ -27,6 +27,7 @@ TimingSummary summarise_timing(std::vector<double> values_ms) {
 ComparedLists compare_lists(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth, const ScoringRules& rules) {
   ComparedLists compared;
   compared.plain = score_objects(mapped, truth, rules);
+  compared.explanations = explain(mapped, truth, compared.plain, rules);
   compared.X_TM = align_map_to_truth(mapped, truth, compared.plain);
   if (compared.X_TM) compared.aligned = score_objects(moved(mapped, *compared.X_TM), truth, rules);
   return compared;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/score/depth_quality.h"
+#include "harness/score/explain.h"
 #include "harness/score/object_score.h"
 #include "harness/score/trajectory_score.h"
 #include "sim/motion/hall_motion.h"
@@ -25,7 +26,8 @@ TimingSummary summarise_timing(std::vector<double> values_ms);
 struct ComparedLists {
   ObjectListScore plain;
   std::optional<ObjectListScore> aligned;
-  std::optional<Pose> X_TM;  // the motion
+  std::optional<Pose> X_TM;               // the motion
+  std::vector<Explanation> explanations;  // what is wrong with the lists as they are
 };
 ComparedLists compare_lists(const std::vector<ListedObject>& mapped, const std::vector<ListedObject>& truth,
                             const ScoringRules& rules = {});

@@ -51,6 +51,10 @@ void add_objects(Json& json, const ComparedLists& objects) {
   json["summary"] = summary_json(objects.plain.summary);
   json["objects_aligned"] = objects.aligned ? objects_json(*objects.aligned) : Json(nullptr);
   json["summary_aligned"] = objects.aligned ? summary_json(objects.aligned->summary) : Json(nullptr);
+  json["explanations"] = Json::array();
+  for (const Explanation& line : objects.explanations) {
+    json["explanations"].push_back({{"truth_id", or_null(line.truth_id)}, {"map_id", or_null(line.map_id)}, {"text", line.text}});
+  }
   json["alignment"] = nullptr;
   if (objects.X_TM) {
     const Eigen::Vector3d shift = objects.X_TM->translation();

@@ -54,11 +54,21 @@ std::string rows(const ObjectListScore& score) {
   return text;
 }
 
+std::string explanation_text(const std::vector<Explanation>& lines) {
+  std::string text;
+  for (const Explanation& line : lines) {
+    text += "- " + (line.truth_id ? "Object " + std::to_string(*line.truth_id) : "Mapped object " + std::to_string(*line.map_id)) + ": " +
+            line.text + ".\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string table6(const ComparedLists& objects, const std::string& title) {
   std::string text = "# Table 6: " + title + "\n";
   text += heading("As mapped") + rows(objects.plain);
+  if (!objects.explanations.empty()) text += "\n## What is wrong\n\n" + explanation_text(objects.explanations);
   if (objects.aligned && objects.X_TM) {
     text += heading("After aligning the map to the truth by one planar motion") + rows(*objects.aligned);
     const Eigen::Vector3d shift = objects.X_TM->translation();

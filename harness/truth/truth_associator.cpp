@@ -1,31 +1,33 @@
 #include "harness/truth/truth_associator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
-#include "mapper/associate/paper_associator.h"
+#include "mapper/stages.h"
 
 namespace waretwin {
 
 namespace {
 
 // The mapper's own update of an object, with conditions that always hold.
-AssociateConfig always(AssociateConfig config) {
-  config.max_frame_gap = 0;
-  config.min_iou_2d = -1.0;
-  config.min_correlation = -1.0e9;
-  config.min_iou_3d = -1.0;
+MapperConfig always(MapperConfig config) {
+  config.associate.max_frame_gap = 0;
+  config.associate.min_iou_2d = -1.0;
+  config.associate.min_correlation = -1.0e9;
+  config.associate.min_iou_3d = -1.0;
+  config.evidence.min_overlap = -1.0;
   return config;
 }
 
 }  // namespace
 
 struct TruthAssociator::Track {
-  PaperAssociator update;
+  std::unique_ptr<Associator> update;
   ObjectList object;  // one at most
 };
 
-TruthAssociator::TruthAssociator(const SimulatedStream& stream, const AssociateConfig& config) : stream_(stream), config_(always(config)) {}
+TruthAssociator::TruthAssociator(const SimulatedStream& stream, const MapperConfig& config) : stream_(stream), config_(always(config)) {}
 
 TruthAssociator::~TruthAssociator() = default;
 
@@ -54,8 +56,12 @@ std::vector<int> TruthAssociator::associate(const std::vector<SegmentedObject>& 
     ids.push_back(id);
     if (id == 0) continue;
     auto& track = tracks_[id];
-    if (!track) track.reset(new Track{PaperAssociator(config_), {}});
-    track->update.associate({object}, context, track->object);
+    if (!track) track.reset(new Track{make_associator(config_), {}});
+    track->update->associate({object}, context, track->object);
+    if (track->object.empty()) {  // not enough of it to be an object yet
+      ids.back() = 0;
+      continue;
+    }
     WARETWIN_CHECK(track->object.size() == 1, "a track is one object");
 
     auto place = std::find_if(map.begin(), map.end(), [id](const MappedObject& mapped) { return mapped.id >= id; });
@@ -64,6 +70,23 @@ std::vector<int> TruthAssociator::associate(const std::vector<SegmentedObject>& 
     place->id = id;
   }
   return ids;
+}
+
+std::vector<std::pair<int, int>> TruthAssociator::take_merges() { return std::exchange(merges_, {}); }
+
+void TruthAssociator::finish(ObjectList& map) {
+  for (auto& [id, track] : tracks_) {
+    const auto mapped = std::find_if(map.begin(), map.end(), [id = id](const MappedObject& m) { return m.id == id; });
+    if (mapped == map.end()) continue;
+    track->update->finish(track->object);
+    if (track->object.empty()) {
+      merges_.emplace_back(id, 0);
+      map.erase(mapped);
+    } else {
+      *mapped = track->object.front();
+      mapped->id = id;
+    }
+  }
 }
 
 }  // namespace waretwin

@@ -4,8 +4,8 @@
 #include <map>
 #include <memory>
 
-#include "mapper/associate/associate_config.h"
 #include "mapper/associate/associator.h"
+#include "mapper/mapper_config.h"
 #include "sim/simulated_stream.h"
 
 namespace waretwin {
@@ -15,15 +15,18 @@ namespace waretwin {
 class TruthAssociator : public Associator {
  public:
   // The stream must outlive the associator; its newest frame is the one that is associated.
-  TruthAssociator(const SimulatedStream& stream, const AssociateConfig& config);
+  TruthAssociator(const SimulatedStream& stream, const MapperConfig& config);
   ~TruthAssociator() override;
   std::vector<int> associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context, ObjectList& map) override;
+  std::vector<std::pair<int, int>> take_merges() override;
+  void finish(ObjectList& map) override;
 
  private:
   struct Track;
   const SimulatedStream& stream_;
-  AssociateConfig config_;
+  MapperConfig config_;
   std::map<int, std::unique_ptr<Track>> tracks_;  // by true id
+  std::vector<std::pair<int, int>> merges_;
 };
 
 // The id among `objects` of class `class_name` that most of the pixels (v * width + u) show; 0 where none does. Equal counts: the smaller

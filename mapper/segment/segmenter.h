@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +15,24 @@
 
 namespace waretwin {
 
+enum class RayKind : std::uint8_t { object, other, unknown };
+
+// One pixel of a depth image: where its ray ended, and whether that is the detected object.
+struct EvidenceRay {
+  Eigen::Vector3f hit_W = Eigen::Vector3f::Zero();  // metres
+  RayKind kind = RayKind::unknown;
+};
+
 struct SegmentedObject {
   Detection detection;
   std::vector<int> pixels;                // v * width + u of the object's pixels in the frame, ascending
   std::vector<Eigen::Vector3f> points_W;  // one per pixel, same order
   Cuboid cuboid;                          // around points_W, frame "world"
   std::vector<float> hsv;                 // colour histogram of the box, for eq. (4)
+  // Profile best: what the rays in and around the box tell, and where they start; the height of what the object stands on.
+  std::vector<EvidenceRay> rays = {};
+  Eigen::Vector3d rays_from_W = Eigen::Vector3d::Zero();
+  std::optional<double> support_W = std::nullopt;
 };
 
 struct Segmentation {

@@ -1,0 +1,221 @@
+#include "mapper/associate/evidence_associator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "mapper/associate/evidence_shape.h"
+
+namespace waretwin {
+
+namespace {
+
+constexpr std::size_t kOverlapSamples = 2000;
+
+// Where most of the points lie: between the 2nd and the 98th percentile of each axis.
+Eigen::AlignedBox3d bulk_of(const std::vector<EvidenceRay>& rays) {
+  Eigen::AlignedBox3d box;
+  std::vector<float> values;
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (const EvidenceRay& ray : rays) {
+      if (ray.kind == RayKind::object) values.push_back(ray.hit_W[axis]);
+    }
+    if (values.empty()) return box;
+    const auto at = [&](double order) {
+      const auto nth = values.begin() + static_cast<std::ptrdiff_t>(order * static_cast<double>(values.size() - 1));
+      std::nth_element(values.begin(), nth, values.end());
+      return static_cast<double>(*nth);
+    };
+    low[axis] = at(0.02);
+    high[axis] = at(0.98);
+  }
+  return {low, high};
+}
+
+// Share of some of the points that lie inside the cuboid.
+double share_inside(const std::vector<Eigen::Vector3f>& points_W, const Cuboid& cuboid, double margin) {
+  if (points_W.empty()) return 0.0;
+  const Eigen::Matrix3f R = cuboid.pose().linear().transpose().cast<float>();
+  const Eigen::Vector3f centre = cuboid.centre.cast<float>();
+  const Eigen::Vector3f half = (0.5 * cuboid.size + Eigen::Vector3d::Constant(margin)).cast<float>();
+  const std::size_t step = std::max<std::size_t>(1, points_W.size() / kOverlapSamples);
+  std::size_t inside = 0, all = 0;
+  for (std::size_t i = 0; i < points_W.size(); i += step, ++all) {
+    const Eigen::Vector3f p = R * (points_W[i] - centre);
+    if ((p.array().abs() <= half.array()).all()) ++inside;
+  }
+  return static_cast<double>(inside) / static_cast<double>(all);
+}
+
+// True where the whole cuboid lies inside the picture and most of it stands before nothing nearer: a detector should have found it.
+bool in_full_view(const Cuboid& cuboid, const AssociationContext& context) {
+  if (context.depth.empty()) return false;
+  constexpr double kBorder = 8.0;  // pixels
+  constexpr double kNear = 0.1;    // metres
+  const Pose X_CO = context.X_WC.inverse() * cuboid.pose();
+  const Intrinsics& intrinsics = context.intrinsics;
+  int seen = 0, all = 0;
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3d corner = Eigen::Vector3d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).cwiseProduct(0.5 * cuboid.size);
+    const Eigen::Vector3d p_C = X_CO * corner;
+    if (p_C.z() < kNear) return false;
+    const Eigen::Vector2d pixel = intrinsics.project(p_C);
+    if (!(pixel.x() >= kBorder && pixel.y() >= kBorder && pixel.x() < intrinsics.width - kBorder &&
+          pixel.y() < intrinsics.height - kBorder)) {
+      return false;
+    }
+    const float depth = context.depth.at<float>(static_cast<int>(std::lround(pixel.y())), static_cast<int>(std::lround(pixel.x())));
+    if (depth <= 0.0f) continue;
+    ++all;
+    // What lies farther is the object's own far side, or shows that it is gone.
+    if (depth > p_C.z() - cuboid.size.norm()) ++seen;
+  }
+  return all >= 9 && seen >= 0.8 * all;
+}
+
+double median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context,
+                                               ObjectList& map) {
+  // A resumed map brings ids of its own.
+  for (const MappedObject& mapped : map) next_id_ = std::max(next_id_, mapped.id + 1);
+
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // -overlap, object, mapped
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    for (std::size_t k = 0; k < map.size(); ++k) {
+      if (objects[i].detection.class_name != map[k].class_name) continue;
+      const double overlap = share_inside(objects[i].points_W, map[k].cuboid, config_.overlap_margin_m);
+      if (overlap >= config_.min_overlap) pairs.emplace_back(-overlap, i, k);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> partner(objects.size(), kNone);
+  std::vector<char> used(map.size(), 0), contested(objects.size(), 0);
+  for (const auto& [negative_overlap, i, k] : pairs) {
+    if (partner[i] != kNone) continue;
+    if (used[k]) {
+      contested[i] = 1;
+      continue;
+    }
+    partner[i] = k;
+    used[k] = 1;
+  }
+
+  std::vector<int> ids(objects.size(), 0);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const SegmentedObject& object = objects[i];
+    // A second box on an object that has one already is no other object.
+    if (partner[i] == kNone && contested[i]) continue;
+    if (partner[i] == kNone) {
+      Track track(config_);
+      MappedObject fresh;
+      fresh.id = next_id_;
+      fresh.class_name = object.detection.class_name;
+      fresh.first_frame = context.frame_id;
+      update(fresh, track, object, context);
+      if (fresh.cuboid.volume() <= 0.0) continue;
+      ++next_id_;
+      ids[i] = fresh.id;
+      tracks_.emplace(fresh.id, std::move(track));
+      map.push_back(std::move(fresh));
+      continue;
+    }
+    MappedObject& mapped = map[partner[i]];
+    update(mapped, tracks_.try_emplace(mapped.id, config_).first->second, object, context);
+    ids[i] = mapped.id;
+  }
+
+  count_misses(context, map);
+
+  const std::size_t merges_before = merges_.size();
+  merge_overlapping(map);
+  for (std::size_t m = merges_before; m < merges_.size(); ++m) std::replace(ids.begin(), ids.end(), merges_[m].first, merges_[m].second);
+  return ids;
+}
+
+std::vector<std::pair<int, int>> EvidenceAssociator::take_merges() { return std::exchange(merges_, {}); }
+
+void EvidenceAssociator::update(MappedObject& mapped, Track& track, const SegmentedObject& object, const AssociationContext& context) {
+  mapped.score = object.detection.score;
+  mapped.last_frame = context.frame_id;
+  mapped.box = object.detection.box;
+  ++mapped.observations;
+  if (object.support_W && std::isfinite(*object.support_W)) track.supports.push_back(static_cast<float>(*object.support_W));
+  // Once the cuboid stands, clutter in the box need not widen the grid.
+  Eigen::AlignedBox3d candidates = bulk_of(object.rays);
+  track.grid.add(object.rays_from_W, object.rays, candidates);
+  if (mapped.observations <= config_.shape_every || mapped.observations - track.shaped_at >= config_.shape_every) shape(mapped, track);
+}
+
+void EvidenceAssociator::shape(MappedObject& mapped, Track& track) const {
+  const double support = track.supports.empty() ? track.grid.origin().z() : median(track.supports);
+  if (const auto cuboid = evidence_cuboid(track.grid, support, config_)) mapped.cuboid = *cuboid;
+  track.shaped_at = mapped.observations;
+}
+
+void EvidenceAssociator::count_misses(const AssociationContext& context, const ObjectList& map) {
+  for (const MappedObject& mapped : map) {
+    if (mapped.last_frame == context.frame_id) continue;
+    const auto track = tracks_.find(mapped.id);
+    if (track != tracks_.end() && in_full_view(mapped.cuboid, context)) ++track->second.misses;
+  }
+}
+
+void EvidenceAssociator::merge_overlapping(ObjectList& map) {
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    for (std::size_t k = i + 1; k < map.size();) {
+      const double smaller = std::min(map[i].cuboid.volume(), map[k].cuboid.volume());
+      if (map[i].class_name != map[k].class_name || smaller <= 0.0 ||
+          intersection_volume(map[i].cuboid, map[k].cuboid) <= config_.merge_overlap * smaller) {
+        ++k;
+        continue;
+      }
+      MappedObject gone = std::move(map[k]);
+      map.erase(map.begin() + static_cast<std::ptrdiff_t>(k));
+      MappedObject& stays = map[i];
+      const int older = std::min(stays.id, gone.id), newer = std::max(stays.id, gone.id);
+      Track merged = std::move(tracks_.try_emplace(stays.id, config_).first->second);
+      const Track& other = tracks_.try_emplace(gone.id, config_).first->second;
+      merged.grid.add(other.grid);
+      merged.misses += other.misses;
+      merged.supports.insert(merged.supports.end(), other.supports.begin(), other.supports.end());
+      tracks_.erase(stays.id);
+      tracks_.erase(gone.id);
+      stays.id = older;
+      stays.first_frame = std::min(stays.first_frame, gone.first_frame);
+      stays.last_frame = std::max(stays.last_frame, gone.last_frame);
+      stays.observations += gone.observations;
+      shape(stays, merged);
+      tracks_.emplace(older, std::move(merged));
+      merges_.emplace_back(newer, older);
+      k = i + 1;  // a larger cuboid may overlap what it did not before
+    }
+  }
+}
+
+void EvidenceAssociator::finish(ObjectList& map) {
+  for (MappedObject& mapped : map) {
+    const auto track = tracks_.find(mapped.id);
+    if (track != tracks_.end()) shape(mapped, track->second);
+  }
+  std::erase_if(map, [&](const MappedObject& mapped) {
+    const auto track = tracks_.find(mapped.id);
+    if (track == tracks_.end()) return false;  // of a map that is resumed, not seen again
+    const bool stray = mapped.observations < config_.min_observations ||
+                       mapped.observations < config_.min_presence * (mapped.observations + track->second.misses);
+    if (stray) merges_.emplace_back(mapped.id, 0);
+    return stray;
+  });
+}
+
+}  // namespace waretwin

@@ -1,0 +1,45 @@
+// Association and update of objects in profile best: by shared space, with the evidence of all frames.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "mapper/associate/associator.h"
+#include "mapper/associate/evidence_config.h"
+#include "mapper/associate/evidence_grid.h"
+
+namespace waretwin {
+
+// A detection is the mapped object of its class that holds the largest share of its points, at least min_overlap; within a frame pairs are
+// one to one. Its rays are added to the object's evidence grid, from which the cuboid is searched every shape_every observations and at
+// the end. Mapped objects that come to share most of the smaller one's volume become one: the older id stays. At the end objects seen too
+// seldom, and those that frames in full view of them did not detect, are taken out.
+class EvidenceAssociator : public Associator {
+ public:
+  explicit EvidenceAssociator(const EvidenceConfig& config) : config_(config) {}
+
+  std::vector<int> associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context, ObjectList& map) override;
+  std::vector<std::pair<int, int>> take_merges() override;
+  void finish(ObjectList& map) override;
+
+ private:
+  struct Track {
+    explicit Track(const EvidenceConfig& config) : grid(config) {}
+    EvidenceGrid grid;
+    std::vector<float> supports;  // heights, one a frame
+    int shaped_at = 0;            // observations when the cuboid was searched
+    int misses = 0;               // frames in full view of it without a detection
+  };
+
+  void update(MappedObject& mapped, Track& track, const SegmentedObject& object, const AssociationContext& context);
+  void shape(MappedObject& mapped, Track& track) const;
+  void count_misses(const AssociationContext& context, const ObjectList& map);
+  void merge_overlapping(ObjectList& map);
+
+  EvidenceConfig config_;
+  int next_id_ = 1;
+  std::map<int, Track> tracks_;  // by map id
+  std::vector<std::pair<int, int>> merges_;
+};
+
+}  // namespace waretwin

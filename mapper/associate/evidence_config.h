@@ -1,0 +1,64 @@
+// Constants of object mapping by evidence (profile best).
+#pragma once
+
+#include "core/fields.h"
+
+namespace waretwin {
+
+struct EvidenceConfig {
+  double cell_m = 0.005;         // edge of a cell in x and y, where the object is small enough
+  double slice_m = 0.01;         // height of a cell
+  double end_slack_m = 0.004;    // a ray passes space up to so near to its end: the noise of a range
+  double end_path_m = 0.03;      // over this length before its end a ray is followed step by step
+  int max_cells = 1500000;       // larger objects get larger cells
+  double margin_m = 0.10;        // the grid reaches this far beyond what may be the object
+  double max_extent_m = 6.0;     // nothing larger is an object
+  double min_hits_share = 0.15;  // cells with fewer hits than this share of the median cell's are noise
+  int min_hits = 3;
+  double join_m = 0.02;             // parts nearer than this are one
+  double bridge_m = 0.5;            // so are parts up to this far away where no ray passed between them (a dark belt between its rails) ...
+  double bridge_share = 0.8;        // ... if this share of the hits on them at least is the object's
+  double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
+  double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
+  double top_area_share = 0.04;     // ... and at least this share of it
+  double foot_gap_m = 0.08;         // an object whose lowest cell is nearer to its support stands on it
+  double heading_step_deg = 0.1;
+  int shape_every = 5;  // the cuboid is searched again after so many more observations
+  // Association
+  double min_overlap = 0.3;  // share of a detection's points inside a mapped cuboid, grown by overlap_margin_m
+  double overlap_margin_m = 0.05;
+  double merge_overlap = 0.5;  // of the smaller of two mapped cuboids, above which they are one object
+  int min_observations = 3;    // fewer are no object at the end
+  double min_presence = 0.3;   // detections over frames in which the object was in full view
+
+  void visit(Fields& f) {
+    f("cell_m", cell_m, "edge of a cell in x and y", {.min = 0.001, .max = 0.1});
+    f("slice_m", slice_m, "height of a cell", {.min = 0.001, .max = 0.1});
+    f("end_slack_m", end_slack_m, "a ray passes space up to so near to its end", {.min = 0, .max = 0.1});
+    f("end_path_m", end_path_m, "over this length before its end a ray is followed step by step", {.min = 0, .max = 1});
+    f("max_cells", max_cells, "cells of one object at most; larger objects get larger cells", {.min = 1000, .max = 1e8});
+    f("margin_m", margin_m, "how far the grid reaches beyond what may be the object", {.min = 0.02, .max = 1});
+    f("max_extent_m", max_extent_m, "nothing larger is an object", {.min = 0.1, .max = 100});
+    f("min_hits_share", min_hits_share, "cells with fewer hits than this share of the median cell's are noise", {.min = 0, .max = 1});
+    f("min_hits", min_hits, "and cells with fewer than these", {.min = 1, .max = 1000});
+    f("join_m", join_m, "parts nearer than this belong together", {.min = 0.001, .max = 1});
+    f("bridge_m", bridge_m, "so do parts up to this far away where no ray passed between them", {.min = 0, .max = 5});
+    f("bridge_share", bridge_share, "if at least this share of the hits on them is the object's", {.min = 0, .max = 1});
+    f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
+      {.min = 0, .max = 1});
+    f("top_area_m2", top_area_m2, "the top is the highest level that at least this much of the footprint reaches", {.min = 0, .max = 10});
+    f("top_area_share", top_area_share, "and at least this share of it", {.min = 0, .max = 1});
+    f("foot_gap_m", foot_gap_m, "an object whose lowest cell is nearer to its support stands on it", {.min = 0, .max = 1});
+    f("heading_step_deg", heading_step_deg, "finest step of the heading search", {.min = 0.01, .max = 5});
+    f("shape_every", shape_every, "the cuboid is searched again after so many more observations", {.min = 1, .max = 1000});
+    f("min_overlap", min_overlap, "share of a detection's points inside a mapped cuboid for both to be one; -1: always",
+      {.min = -1, .max = 1});
+    f("overlap_margin_m", overlap_margin_m, "the cuboid grows by this for that question", {.min = 0, .max = 1});
+    f("merge_overlap", merge_overlap, "mapped objects that share more of the smaller one's volume are one", {.min = 0, .max = 1});
+    f("min_observations", min_observations, "objects seen in fewer frames are taken out at the end", {.min = 1, .max = 1000});
+    f("min_presence", min_presence,
+      "share of the frames with the object in full view in which it was detected, below which it is taken out", {.min = 0, .max = 1});
+  }
+};
+
+}  // namespace waretwin

@@ -1,0 +1,187 @@
+#include "mapper/associate/evidence_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "mapper/associate/evidence_parts.h"
+
+namespace waretwin {
+
+namespace {
+
+// Cells that are filled and the object's.
+std::vector<char> object_cells(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
+  const Eigen::Vector3i n = grid.size();
+  const auto total = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) * static_cast<std::size_t>(n.z());
+  std::vector<char> mine(total, 0);
+  std::vector<int> hits;
+  std::size_t i = 0;
+  for (int z = 0; z < n.z(); ++z) {
+    const double top = grid.origin().z() + (z + 1) * grid.cell_size().z();
+    for (int y = 0; y < n.y(); ++y) {
+      for (int x = 0; x < n.x(); ++x, ++i) {
+        const EvidenceCell& cell = grid.cell(x, y, z);
+        if (cell.object == 0 || cell.object <= cell.other || cell.hits() < cell.passed || top <= support_z) continue;
+        mine[i] = 1;
+        hits.push_back(cell.hits());
+      }
+    }
+  }
+  if (hits.empty()) return mine;
+  const auto middle = hits.begin() + static_cast<std::ptrdiff_t>(hits.size() / 2);
+  std::nth_element(hits.begin(), middle, hits.end());
+  const int fewest = std::max(std::min(config.min_hits, *middle), static_cast<int>(config.min_hits_share * *middle));
+  i = 0;
+  for (int z = 0; z < n.z(); ++z) {
+    for (int y = 0; y < n.y(); ++y) {
+      for (int x = 0; x < n.x(); ++x, ++i) {
+        if (mine[i] && grid.cell(x, y, z).hits() < fewest) mine[i] = 0;
+      }
+    }
+  }
+  return mine;
+}
+
+struct OutlineCell {
+  Eigen::Vector2d centre;
+  int z;  // slice
+};
+
+struct Outline {
+  std::vector<OutlineCell> border;  // cells of each slice with an empty neighbour in it
+  std::vector<double> tops;         // height of each column, metres
+  double lowest = std::numeric_limits<double>::infinity();
+};
+
+Outline outline_of(const EvidenceGrid& grid, const std::vector<char>& mine) {
+  const Eigen::Vector3i n = grid.size();
+  const auto plane = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y());
+  const auto is_mine = [&](int x, int y, int z) {
+    return x >= 0 && y >= 0 && x < n.x() && y < n.y() &&
+           mine[static_cast<std::size_t>(z) * plane + static_cast<std::size_t>(y) * static_cast<std::size_t>(n.x()) +
+                static_cast<std::size_t>(x)];
+  };
+  Outline outline;
+  const double slice = grid.cell_size().z();
+  for (int y = 0; y < n.y(); ++y) {
+    for (int x = 0; x < n.x(); ++x) {
+      int top = -1;
+      for (int z = n.z() - 1; z >= 0; --z) {
+        if (!is_mine(x, y, z)) continue;
+        top = std::max(top, z);
+        outline.lowest = std::min(outline.lowest, grid.origin().z() + z * slice);
+        if (is_mine(x - 1, y, z) && is_mine(x + 1, y, z) && is_mine(x, y - 1, z) && is_mine(x, y + 1, z)) continue;
+        outline.border.push_back(
+            {{grid.origin().x() + (x + 0.5) * grid.cell_size().x(), grid.origin().y() + (y + 0.5) * grid.cell_size().y()}, z});
+      }
+      if (top < 0) continue;
+      // Noise spreads a surface over slices: all that it reaches make its height.
+      double sum = 0.0;
+      int count = 0;
+      for (int z = std::max(0, top - 1); z <= std::min(n.z() - 1, top + 1); ++z) {
+        const EvidenceCell& cell = grid.cell(x, y, z);
+        if (cell.object <= cell.other) continue;
+        sum += cell.z_sum + (grid.origin().z() + z * slice) * cell.object;
+        count += cell.object;
+      }
+      outline.tops.push_back(sum / count);
+    }
+  }
+  return outline;
+}
+
+// Extent of the outline along `along`: the outermost place that lanes of a cross section of `support` reach, on either side.
+struct Extent {
+  double low = 0.0, high = 0.0;
+  double length() const { return high - low; }
+};
+
+Extent extent_along(const std::vector<OutlineCell>& border, const Eigen::Vector2d& along, double lane, double slice, int slices,
+                    double support) {
+  const Eigen::Vector2d across(-along.y(), along.x());
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const OutlineCell& c : border) {
+    const double y = c.centre.dot(across);
+    first = std::min(first, y);
+    last = std::max(last, y);
+  }
+  const auto columns = static_cast<std::size_t>((last - first) / lane) + 1;
+  const auto lanes = columns * static_cast<std::size_t>(slices);
+  std::vector<double> low(lanes, std::numeric_limits<double>::infinity()), high(lanes, -std::numeric_limits<double>::infinity());
+  for (const OutlineCell& c : border) {
+    const std::size_t i =
+        static_cast<std::size_t>(c.z) * columns + std::min(columns - 1, static_cast<std::size_t>((c.centre.dot(across) - first) / lane));
+    const double x = c.centre.dot(along);
+    low[i] = std::min(low[i], x);
+    high[i] = std::max(high[i], x);
+  }
+  const auto empty = [](double value) { return !std::isfinite(value); };
+  std::erase_if(low, empty);
+  std::erase_if(high, empty);
+  const std::size_t nth = std::min((low.size() - 1) / 2, static_cast<std::size_t>(support / (lane * slice)));
+  std::nth_element(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(nth), low.end());
+  std::nth_element(high.begin(), high.begin() + static_cast<std::ptrdiff_t>(nth), high.end(), std::greater<>());
+  return {low[nth], high[nth]};
+}
+
+struct Rectangle {
+  double yaw = 0.0, area = std::numeric_limits<double>::infinity();
+  Extent x, y;
+};
+
+Rectangle smallest_rectangle(const std::vector<OutlineCell>& border, double cell, double slice, int slices, const EvidenceConfig& config) {
+  const double lane = std::max(0.01, cell);
+  Rectangle best;
+  const auto try_heading = [&](double yaw) {
+    const Eigen::Vector2d along(std::cos(yaw), std::sin(yaw)), across(-along.y(), along.x());
+    Rectangle r{yaw, 0.0, extent_along(border, along, lane, slice, slices, config.edge_support_m2),
+                extent_along(border, across, lane, slice, slices, config.edge_support_m2)};
+    for (Extent* e : {&r.x, &r.y}) {
+      e->low -= 0.5 * cell;
+      e->high += 0.5 * cell;
+    }
+    r.area = r.x.length() * r.y.length();
+    if (r.area < best.area) best = r;
+  };
+  constexpr double kCoarse = std::numbers::pi / 90.0;
+  for (int i = 0; i < 45; ++i) try_heading(i * kCoarse);
+  const double fine = config.heading_step_deg * std::numbers::pi / 180.0;
+  const double around = best.yaw;
+  const int steps = static_cast<int>(std::ceil(kCoarse / fine));
+  for (int i = -steps; i <= steps; ++i) try_heading(around + i * fine);
+  return best;
+}
+
+}  // namespace
+
+std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
+  if (grid.empty()) return std::nullopt;
+  std::vector<char> mine = object_cells(grid, support_z, config);
+  keep_one_object(grid, mine, config);
+  Outline outline = outline_of(grid, mine);
+  if (outline.tops.empty()) return std::nullopt;
+
+  const double cell = grid.cell_size().x();
+  const Rectangle r = smallest_rectangle(outline.border, cell, grid.cell_size().z(), grid.size().z(), config);
+  const double area = std::max(config.top_area_m2, config.top_area_share * cell * cell * static_cast<double>(outline.tops.size()));
+  const std::size_t nth = std::min((outline.tops.size() - 1) / 2, static_cast<std::size_t>(area / (cell * cell)));
+  std::nth_element(outline.tops.begin(), outline.tops.begin() + static_cast<std::ptrdiff_t>(nth), outline.tops.end(), std::greater<>());
+  const double top = outline.tops[nth];
+  // What stands on its support is seen down to the points that may be the support's own.
+  const double bottom = outline.lowest - support_z < config.foot_gap_m ? support_z : outline.lowest;
+
+  Cuboid cuboid;
+  const Eigen::Vector2d along(std::cos(r.yaw), std::sin(r.yaw)), across(-along.y(), along.x());
+  const Eigen::Vector2d centre = 0.5 * (r.x.low + r.x.high) * along + 0.5 * (r.y.low + r.y.high) * across;
+  cuboid.centre = {centre.x(), centre.y(), 0.5 * (top + bottom)};
+  cuboid.size = {std::max(0.0, r.x.length()), std::max(0.0, r.y.length()), std::max(1e-3, top - bottom)};
+  cuboid.yaw = r.yaw;
+  return canonical(cuboid);
+}
+
+}  // namespace waretwin
