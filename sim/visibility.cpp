@@ -226,6 +226,12 @@ void SurfaceCoverage::add_frame(const std::string& sensor, const Pose& X_WC) {
   });
 }
 
+void SurfaceCoverage::forget_frames() {
+  for (ObjectSurface& object : state_->objects) {
+    for (SurfaceSample& sample : object.samples) sample.seen = false;
+  }
+}
+
 double SurfaceCoverage::fraction(int object_id) const {
   int viewable = 0, seen = 0;
   for (const SurfaceSample& sample : state_->object(object_id).samples) {

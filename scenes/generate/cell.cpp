@@ -1,0 +1,263 @@
+#include "scenes/generate/cell.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/pose.h"
+#include "scenes/generate/items.h"
+#include "scenes/generate/room_plan.h"
+#include "scenes/generate/station.h"
+
+namespace waretwin::generate {
+
+namespace {
+
+using builder::Placement;
+
+// Headings keep this far off whole degrees: a mapper that searches in steps of one must not be flattered by the hall.
+constexpr double kOffGridDeg = 0.15;
+constexpr double kBetweenStations = 0.45;  // metres
+constexpr double kItemGap = 0.03;          // between things on the floor
+constexpr double kClutterGap = 0.05;       // between a conveyor and what stands beside it
+
+bool off_grid(const Station& station, double yaw_deg) {
+  return std::all_of(station.conveyors.begin(), station.conveyors.end(), [&](const PlannedConveyor& c) {
+    const double yaw = c.at.yaw_deg + yaw_deg;
+    return std::abs(yaw - std::round(yaw)) > kOffGridDeg;
+  });
+}
+
+Solid zone(const Eigen::AlignedBox2d& box, const Placement& at, double high) {
+  Eigen::AlignedBox3d extent(Eigen::Vector3d(box.min().x(), box.min().y(), 0), Eigen::Vector3d(box.max().x(), box.max().y(), high));
+  return solid_of(extent, at);
+}
+
+// Where the vehicle stands to look at a station; nothing may be put there.
+Solid approach(const Station& s, const Placement& at) {
+  const double beside = std::max(s.free_beside, 1.25 - 0.5 * s.footprint.sizes().x());
+  return zone({Eigen::Vector2d(s.footprint.min().x() - beside, s.footprint.min().y() - s.free_in_front),
+               Eigen::Vector2d(s.footprint.max().x() + beside, s.footprint.min().y() - 0.02)},
+              at, 3.0);
+}
+
+Solid body(const Station& s, const Placement& at) { return zone(s.footprint, at, 1.2); }
+
+// Inside the room as a whole, and deep enough for a vehicle to turn in front.
+bool within(const HallPlan& plan, const Solid& solid) {
+  for (const double sx : {-1.0, 1.0}) {
+    for (const double sy : {-1.0, 1.0}) {
+      const Eigen::Vector2d corner =
+          solid.centre + Eigen::Rotation2Dd(solid.yaw) * Eigen::Vector2d(sx * solid.half.x(), sy * solid.half.y());
+      if (std::abs(corner.x()) > plan.length / 2 + 0.01 || std::abs(corner.y()) > plan.width / 2 + 0.01) return false;
+    }
+  }
+  return true;
+}
+
+struct Standing {
+  Station station;
+  Placement at;
+  bool island = false;
+};
+
+bool station_fits(const HallPlan& plan, const std::vector<Standing>& others, const Station& s, const Placement& at, bool island) {
+  const Solid here = body(s, at);
+  if (!plan.fits(here, kBetweenStations)) return false;
+  // Straight ahead there is room to turn, whatever stands or is still to be put to the sides.
+  const Solid lane = zone({Eigen::Vector2d(s.footprint.center().x() - 0.75, s.footprint.min().y() - 1.45),
+                           Eigen::Vector2d(s.footprint.center().x() + 0.75, s.footprint.min().y() - 0.05)},
+                          at, 3.0);
+  if (!within(plan, lane)) return false;
+  const Solid front = approach(s, at);
+  for (const Solid& other : plan.solids) {
+    if (collide(front, other, 0.0)) return false;
+  }
+  if (!island) return true;
+  // All round an island vehicles drive.
+  Solid round = here;
+  round.half += Eigen::Vector2d::Constant(1.4);
+  if (!within(plan, round)) return false;
+  return std::none_of(others.begin(), others.end(), [&](const Standing& o) { return collide(round, body(o.station, o.at), 0.0); });
+}
+
+// A station somewhere along a wall or in the middle; false where no place is found.
+bool stand_somewhere(HallPlan& plan, std::vector<Standing>& standing, Station station, bool island, Dice& dice) {
+  constexpr int kTries = 60;
+  for (int i = 0; i < kTries; ++i) {
+    Placement at;
+    if (island) {
+      at = {dice.between(-0.5, 0.5) * std::max(0.0, plan.length - 4.5), dice.between(-0.5, 0.5) * std::max(0.0, plan.width - 4.5), 0,
+            dice.between(0, 360)};
+    } else {
+      double along = dice.between(0, 2 * (plan.length + plan.width));
+      std::size_t k = 0;
+      while (k < 3 && along > plan.walls[k].length()) along -= plan.walls[k++].length();
+      const double back = station.footprint.max().y();
+      // Behind it a hand's width up to a walkway.
+      at = plan.walls[k].at(along, dice.between(0.12, dice.chance(0.3) ? 0.8 : 0.35) + back, 0);
+      at.yaw_deg += 180 + dice.between(-3.5, 3.5);
+    }
+    at.x = to_mm(at.x);
+    at.y = to_mm(at.y);
+    if (!off_grid(station, at.yaw_deg) || !station_fits(plan, standing, station, at, island)) continue;
+    place_station(plan, station, at);
+    plan.kept_free.push_back(approach(station, at));
+    if (island) {
+      Solid round = body(station, at);
+      round.half += Eigen::Vector2d::Constant(1.35);
+      plan.kept_free.push_back(round);
+    }
+    standing.push_back({std::move(station), at, island});
+    return true;
+  }
+  return false;
+}
+
+// Beside a station: a table with things on it, a stack of bins, a board that leans on it.
+void add_neighbours(HallPlan& plan, const Standing& s, double clutter, Dice& dice) {
+  const Eigen::AlignedBox2d& f = s.station.footprint;
+  for (const double side : {-1.0, 1.0}) {
+    if (!dice.chance(clutter)) continue;
+    const double edge = side < 0 ? f.min().x() : f.max().x();
+    const double kind = dice.unit();
+    if (kind < 0.4) {
+      const double width = to_mm(dice.between(0.6, 1.1)), depth = to_mm(std::min(f.sizes().y(), dice.between(0.5, 0.75)));
+      const double height = to_mm(dice.between(0.70, 0.80));
+      const Item item = table(width, depth, height, dice.chance(0.5) ? "table_top" : "beech", dice.chance(0.3));
+      const Placement local{edge + side * (width / 2 + dice.between(0.05, 0.25)), f.max().y() - depth / 2 - dice.between(0, 0.1), 0,
+                            dice.between(-2, 2)};
+      const Placement at = placed(s.at, local);
+      if (plan.try_add(item, at, kItemGap)) {
+        Placement top = at;
+        top.z = height;
+        furnish(plan, {top, width, depth}, dice.whole(1, 3), 0.02, dice);
+      }
+    } else if (kind < 0.65 && !s.station.supports.empty()) {
+      const Item item = draw_leaning_panel(dice);
+      // Its upper edge just touches the side.
+      const Placement local{edge + side * (item.extent.max().y() + 0.012), dice.between(-0.08, 0.12), 0, side * 90};
+      plan.try_add(item, placed(s.at, local), 0.004);
+    } else {
+      const Item item = dice.chance(0.7) ? bin_stack(dice) : draw_floor_item(dice);
+      const Placement local{edge + side * dice.between(0.3, 0.7), dice.between(f.center().y(), f.max().y()), 0, dice.between(-15, 15)};
+      plan.try_add(item, placed(s.at, local), kItemGap);
+    }
+  }
+  for (const Top& top : s.station.tops) {
+    furnish(plan, {placed(s.at, top.at), top.width, top.depth}, static_cast<int>(std::lround(clutter * dice.between(0.5, 4.5))),
+            kClutterGap, dice);
+  }
+}
+
+void add_wall_items(HallPlan& plan, int count, Dice& dice) {
+  constexpr int kTries = 10;
+  for (int i = 0; i < count; ++i) {
+    const WallItem drawn = draw_wall_item(dice, plan.height);
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      double along = dice.between(0, 2 * (plan.length + plan.width));
+      std::size_t k = 0;
+      while (k < 3 && along > plan.walls[k].length()) along -= plan.walls[k++].length();
+      Placement at = plan.walls[k].at(along, drawn.item.extent.max().y() + dice.between(0.025, 0.12), 0);
+      at.yaw_deg += 180 + (drawn.top > 0 ? dice.between(-2, 2) : 0);
+      if (!plan.try_add(drawn.item, at, kItemGap)) continue;
+      if (drawn.top > 0) {
+        Placement top = at;
+        top.z = drawn.top;
+        furnish(plan, {top, drawn.top_width, drawn.top_depth}, dice.whole(1, 4), 0.02, dice);
+      }
+      if (drawn.seat && dice.chance(0.6)) {
+        const Placement seat =
+            placed(at, {dice.between(-0.25, 0.25), drawn.item.extent.min().y() - dice.between(0.35, 0.6), 0, 180 + dice.between(-50, 50)});
+        plan.try_add(chair(dice), seat, 0.01);
+      }
+      break;
+    }
+  }
+}
+
+void add_floor_items(HallPlan& plan, int count, Dice& dice) {
+  constexpr int kTries = 25;
+  for (int i = 0; i < count; ++i) {
+    const Item item = draw_floor_item(dice);
+    const bool straight = dice.chance(0.6);
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      // Near the walls rather than in the way.
+      double along = dice.between(0, 2 * (plan.length + plan.width));
+      std::size_t k = 0;
+      while (k < 3 && along > plan.walls[k].length()) along -= plan.walls[k++].length();
+      const double reach = std::max(item.extent.sizes().x(), item.extent.sizes().y()) / 2;
+      Placement at = plan.walls[k].at(along, reach + dice.between(0.05, 0.8), 0);
+      at.yaw_deg += straight ? dice.between(-6, 6) : dice.between(0, 360);
+      if (plan.try_add(item, at, kItemGap)) break;
+    }
+  }
+}
+
+void add_floor_marks(HallPlan& plan, const std::vector<Standing>& standing, Dice& dice) {
+  const std::vector<std::string> tapes = {"hazard_tape", "yellow_tape"};
+  const bool docks = dice.chance(0.6);
+  const std::string finish = dice.pick(tapes);
+  for (const Standing& s : standing) {
+    if (!docks) continue;
+    const double y = s.station.footprint.min().y() - 0.06;
+    FloorMark mark{{}, 0.06, finish};
+    for (const double x : {s.station.footprint.min().x(), s.station.footprint.max().x()}) {
+      const Placement p = placed(s.at, {x, y, 0, 0});
+      mark.path.emplace_back(p.x, p.y);
+    }
+    plan.marks.push_back(mark);
+  }
+  if (dice.chance(0.6)) {
+    const double inset = dice.between(1.6, 2.0), x = plan.length / 2 - inset, y = plan.width / 2 - inset;
+    if (x > 0.6 && y > 0.4)
+      plan.marks.push_back({{{-x, -y}, {x, -y}, {x, y}, {-x, y}, {-x, -y}}, to_mm(dice.between(0.05, 0.1)), "yellow_tape"});
+  }
+}
+
+}  // namespace
+
+std::optional<HallPlan> draw_cell(const GenerateConfig& config, int attempt) {
+  Dice room(config.seed, "room", attempt), stations(config.seed, "stations", attempt), things(config.seed, "things", attempt);
+  HallPlan plan;
+  plan.name = "cell_" + std::to_string(config.seed);
+  plan.title = "A production cell";
+  plan.description = "A random production cell";
+  const int count = config.conveyors > 0 ? config.conveyors : room.whole(3, 6);
+  const double clutter = config.clutter >= 0 ? config.clutter : room.between(0.35, 1.0);
+  const double area = count * room.between(8.0, 10.5) + 24.0, aspect = room.between(1.2, 2.0);
+  const double drawn_length = std::sqrt(area * aspect);
+  const double length = config.length_m > 0 ? config.length_m : std::round(drawn_length * 10) / 10;
+  const double width = config.width_m > 0 ? config.width_m : std::round(std::max(5.2, area / drawn_length) * 10) / 10;
+  const double height = std::round(room.between(2.9, 4.2) * 10) / 10;
+  const ConveyorFinishes finishes = draw_finishes(plan, room);
+  draw_room(plan, length, width, height, room);
+
+  std::vector<int> groups(static_cast<std::size_t>(count), 1);
+  if (count > 1 && stations.chance(config.close_share)) {
+    groups.pop_back();
+    groups[0] = 2;
+  }
+  std::vector<Standing> standing;
+  const bool islands = std::min(length, width) > 6.2 && stations.chance(0.5);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double apart = to_mm(stations.between(0.05, 0.30));
+    const bool on_table = stations.chance(0.65), island = islands && i + 1 == groups.size();
+    constexpr int kDraws = 4;
+    bool done = false;
+    for (int k = 0; k < kDraws && !done; ++k) {
+      Station station = on_table ? draw_table_top_station(stations, finishes, groups[i], apart)
+                                 : draw_floor_station(stations, finishes, groups[i], apart);
+      done = stand_somewhere(plan, standing, std::move(station), island && k < 2, stations);
+    }
+    if (!done) return std::nullopt;
+  }
+  for (const Standing& s : standing) add_neighbours(plan, s, clutter, things);
+  const double perimeter = 2 * (length + width);
+  add_wall_items(plan, static_cast<int>(std::lround(clutter * perimeter * things.between(0.12, 0.3))), things);
+  add_floor_items(plan, static_cast<int>(std::lround(clutter * perimeter * things.between(0.1, 0.3))), things);
+  decorate_walls(plan, things);
+  add_floor_marks(plan, standing, things);
+  return plan;
+}
+
+}  // namespace waretwin::generate

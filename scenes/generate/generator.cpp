@@ -1,0 +1,71 @@
+#include "scenes/generate/generator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/error.h"
+#include "scenes/generate/cell.h"
+#include "scenes/generate/dice.h"
+#include "scenes/generate/route.h"
+
+namespace waretwin::generate {
+
+namespace {
+
+constexpr double kSmallestSide = 4.0;  // metres: a station, and before it a vehicle that turns
+
+std::string size_text(const GenerateConfig& c) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%gx%g", c.length_m, c.width_m);
+  return text;
+}
+
+// The vehicle has worn its way into the floor: along part of the route.
+void add_tyre_marks(HallPlan& plan, Dice& dice) {
+  const auto& route = plan.robot.route;
+  const int count = static_cast<int>(route.size());
+  for (int k = dice.whole(1, 3); k > 0 && count > 4; --k) {
+    const int first = dice.whole(0, count - 4), last = std::min(count - 1, first + dice.whole(3, 6));
+    FloorMark mark{{}, 0.12, ""};
+    for (int i = first; i <= last; ++i) {
+      const Eigen::Vector2d p(to_mm(route[static_cast<std::size_t>(i)].x_m + dice.between(-0.05, 0.05)),
+                              to_mm(route[static_cast<std::size_t>(i)].y_m + dice.between(-0.05, 0.05)));
+      if (mark.path.empty() || (p - mark.path.back()).norm() > 0.35) mark.path.push_back(p);
+    }
+    if (mark.path.size() > 2) plan.marks.push_back(mark);
+  }
+}
+
+}  // namespace
+
+Generator::Generator(const GenerateConfig& config, const CameraConfig& camera) : config_(config), camera_(camera) {
+  const bool sized = config.length_m > 0 || config.width_m > 0;
+  if (sized && std::min(config.length_m, config.width_m) < kSmallestSide) {
+    throw Error("size " + size_text(config) + ": too small for a vehicle to turn before a conveyor; expected at least 4x4 m");
+  }
+}
+
+bool Generator::look_closer(HallPlan& plan, int attempt, const std::vector<int>& effort) const {
+  Dice dice(config_.seed, "route", attempt);
+  RouteWishes wishes;
+  wishes.clearance_m = config_.clearance_m;
+  wishes.wait_s = config_.wait_s;
+  wishes.effort = effort;
+  wishes.start = plan.entrance;
+  wishes.back_to_start = dice.chance(0.5);
+  HallPlan other = plan;
+  if (!plan_route(other, camera_, wishes).empty()) return false;
+  plan = std::move(other);
+  return true;
+}
+
+std::optional<HallPlan> Generator::draw(int attempt) const {
+  std::optional<HallPlan> plan = draw_cell(config_, attempt);
+  if (!plan || !look_closer(*plan, attempt, {})) return std::nullopt;
+  Dice dice(config_.seed, "marks", attempt);
+  add_tyre_marks(*plan, dice);
+  return plan;
+}
+
+}  // namespace waretwin::generate
