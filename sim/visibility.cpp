@@ -241,6 +241,14 @@ double SurfaceCoverage::fraction(int object_id) const {
   return viewable > 0 ? static_cast<double>(seen) / viewable : 0.0;
 }
 
+std::vector<SurfaceCoverage::Point> SurfaceCoverage::missed(int object_id) const {
+  std::vector<Point> points;
+  for (const SurfaceSample& sample : state_->object(object_id).samples) {
+    if (sample.viewable && !sample.seen) points.push_back({sample.p_W.cast<double>(), sample.normal.cast<double>()});
+  }
+  return points;
+}
+
 double SurfaceCoverage::viewable(int object_id) const {
   const auto& samples = state_->object(object_id).samples;
   if (samples.empty()) return 0.0;

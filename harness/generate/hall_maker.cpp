@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostDraws = 40;   // halls
-constexpr int kMostEfforts = 4;  // routes through one hall
+constexpr int kMostDraws = 40;      // halls
+constexpr int kMostExtensions = 6;  // of a route
 
 // A folder is replaced as a whole, so nothing but an earlier generated hall may stand in it: what somebody has changed by hand or run
 // there must not be lost.
@@ -92,22 +92,22 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     const auto scene = std::make_shared<const Scene>(build_scene(scenario));
     WARETWIN_CHECK(scene->objects.size() == plan->conveyors.size(), "every planned conveyor is a true object");
     SurfaceCoverage coverage(std::make_shared<RayCaster>(scene), scenario.sensors.cameras, scenario.robot);
-    std::vector<int> effort(plan->conveyors.size(), 0);
     std::vector<double> shares;
     bool good = false;
-    for (int again = 0; again <= kMostEfforts && !good; ++again) {
-      if (again > 0) {
-        if (!generator.look_closer(*plan, draw, effort)) break;
-        write_file(scenario_file, generate::scenario_text(*plan, config.seed));
-        scenario = load_scenario(scenario_file);
-      }
+    for (int again = 0; again <= kMostExtensions && !good; ++again) {
       shares = coverage_along(scenario, *scene, coverage);
+      generate::Missed missed(plan->conveyors.size());
       good = true;
       for (std::size_t i = 0; i < shares.size(); ++i) {
         if (shares[i] >= config.coverage) continue;
         good = false;
-        ++effort[planned(*plan, scene->objects[i].name)];
+        for (const SurfaceCoverage::Point& point : coverage.missed(scene->objects[i].id)) {
+          missed[planned(*plan, scene->objects[i].name)].push_back({point.p_W, point.normal, 1.0});
+        }
       }
+      if (good || again == kMostExtensions || !generator.look_again(*plan, draw, missed)) break;
+      write_file(scenario_file, generate::scenario_text(*plan, config.seed));
+      scenario = load_scenario(scenario_file);
     }
     const double worst = shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
     best_worst = std::max(best_worst, worst);

@@ -40,6 +40,16 @@ Solid approach(const Station& s, const Placement& at) {
               at, 3.0);
 }
 
+// Where it stands beside a station that must be seen from its sides.
+std::vector<Solid> side_lanes(const Station& s, const Placement& at) {
+  if (!s.sides_matter) return {};
+  constexpr double kLane = 1.4;
+  const Eigen::AlignedBox2d& f = s.footprint;
+  const double back = f.max().y() - 0.35;
+  return {zone({Eigen::Vector2d(f.max().x() + 0.02, f.min().y()), Eigen::Vector2d(f.max().x() + kLane, back)}, at, 3.0),
+          zone({Eigen::Vector2d(f.min().x() - kLane, f.min().y()), Eigen::Vector2d(f.min().x() - 0.02, back)}, at, 3.0)};
+}
+
 Solid body(const Station& s, const Placement& at) { return zone(s.footprint, at, 1.2); }
 
 // Inside the room as a whole, and deep enough for a vehicle to turn in front.
@@ -52,6 +62,15 @@ bool within(const HallPlan& plan, const Solid& solid) {
     }
   }
   return true;
+}
+
+// How far a conveyor reaches to the station's back.
+double turned_top(const PlannedConveyor& c) {
+  double top = -1e9;
+  for (const Solid& s : c.solids()) {
+    top = std::max(top, s.centre.y() + s.half.x() * std::abs(std::sin(s.yaw)) + s.half.y() * std::abs(std::cos(s.yaw)));
+  }
+  return top;
 }
 
 struct Standing {
@@ -71,6 +90,10 @@ bool station_fits(const HallPlan& plan, const std::vector<Standing>& others, con
   const Solid front = approach(s, at);
   for (const Solid& other : plan.solids) {
     if (collide(front, other, 0.0)) return false;
+  }
+  for (const Solid& side : side_lanes(s, at)) {
+    if (!within(plan, side)) return false;
+    if (std::any_of(plan.solids.begin(), plan.solids.end(), [&](const Solid& other) { return collide(side, other, 0.0); })) return false;
   }
   if (!island) return true;
   // All round an island vehicles drive.
@@ -93,8 +116,10 @@ bool stand_somewhere(HallPlan& plan, std::vector<Standing>& standing, Station st
       std::size_t k = 0;
       while (k < 3 && along > plan.walls[k].length()) along -= plan.walls[k++].length();
       const double back = station.footprint.max().y();
-      // Behind it a hand's width up to a walkway.
-      at = plan.walls[k].at(along, dice.between(0.12, dice.chance(0.3) ? 0.8 : 0.35) + back, 0);
+      // Behind a conveyor is too little room for a vehicle to see its back, or enough to drive there.
+      double behind = 0.0;
+      for (const PlannedConveyor& c : station.conveyors) behind = std::max(behind, back - turned_top(c));
+      at = plan.walls[k].at(along, dice.between(0.10, std::max(0.16, 0.62 - behind)) + back, 0);
       at.yaw_deg += 180 + dice.between(-3.5, 3.5);
     }
     at.x = to_mm(at.x);
@@ -102,6 +127,7 @@ bool stand_somewhere(HallPlan& plan, std::vector<Standing>& standing, Station st
     if (!off_grid(station, at.yaw_deg) || !station_fits(plan, standing, station, at, island)) continue;
     place_station(plan, station, at);
     plan.kept_free.push_back(approach(station, at));
+    for (const Solid& side : side_lanes(station, at)) plan.kept_free.push_back(side);
     if (island) {
       Solid round = body(station, at);
       round.half += Eigen::Vector2d::Constant(1.35);

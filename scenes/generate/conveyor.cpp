@@ -34,6 +34,21 @@ void add_face(std::vector<SurfacePatch>& out, const Vector3d& middle, const Vect
   }
 }
 
+// Rollers show what slants to either side of their top to cameras before and behind: patches whose normals lean along x (or along the
+// curve).
+void add_roller_flanks(std::vector<SurfacePatch>& patches, const Vector3d& p, const Vector3d& along, double area) {
+  for (const double side : {-1.0, 1.0}) {
+    patches.push_back({p, (0.9 * side * along + 0.44 * Vector3d::UnitZ()).normalized(), 0.35 * area});
+  }
+}
+
+// The same over a rectangle that lies level.
+void add_roller_flanks(std::vector<SurfacePatch>& patches, double length, double width, double top) {
+  std::vector<SurfacePatch> deck;
+  add_face(deck, {0, 0, top}, {length, 0, 0}, {0, width, 0});
+  for (const SurfacePatch& patch : deck) add_roller_flanks(patches, patch.p_W, Vector3d::UnitX(), patch.area);
+}
+
 // Top and four sides of an upright box about (x, y), turned by `yaw`.
 void add_box(std::vector<SurfacePatch>& out, const Eigen::Vector2d& at, double dx, double dy, double low, double high, double yaw,
              bool top) {
@@ -50,6 +65,7 @@ void add_box(std::vector<SurfacePatch>& out, const Eigen::Vector2d& at, double d
 std::vector<SurfacePatch> local_surface(const TableTopConveyor& c) {
   std::vector<SurfacePatch> patches;
   add_box(patches, {0, 0}, c.length, c.width, 0, c.height, 0, true);
+  if (c.rollers) add_roller_flanks(patches, c.length, c.width, c.height);
   return patches;
 }
 
@@ -57,6 +73,7 @@ std::vector<SurfacePatch> local_surface(const FloorConveyor& c) {
   std::vector<SurfacePatch> patches;
   const double top = rail_top(c);
   add_box(patches, {0, 0}, c.length, c.width, top - kFrameHeight, top, 0, true);
+  if (c.rollers) add_roller_flanks(patches, c.length, c.width, top);
   const int pairs = std::max(2, static_cast<int>(std::ceil(c.length / 2.0)) + 1);
   for (int i = 0; i < pairs; ++i) {
     for (const double side : {-1.0, 1.0}) {
@@ -77,7 +94,9 @@ std::vector<SurfacePatch> local_surface(const CurveConveyor& c) {
     const double a = (i + 0.5) / steps * total, arc = total / steps;
     for (int k = 0; k < rings; ++k) {
       const double r = inside + (k + 0.5) / rings * c.width;
-      patches.push_back({out(a) * r + Vector3d(0, 0, top), Vector3d::UnitZ(), r * arc * c.width / rings});
+      const double area = r * arc * c.width / rings;
+      patches.push_back({out(a) * r + Vector3d(0, 0, top), Vector3d::UnitZ(), area});
+      if (!c.belt) add_roller_flanks(patches, patches.back().p_W, Vector3d(-out(a).y(), out(a).x(), 0), area);
     }
     const Vector3d z(0, 0, top - 0.5 * kFrameHeight);
     patches.push_back({out(a) * outside + z, out(a), outside * arc * kFrameHeight});

@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "scenes/generate/cell.h"
 #include "scenes/generate/dice.h"
-#include "scenes/generate/route.h"
 
 namespace waretwin::generate {
 
@@ -46,23 +45,18 @@ Generator::Generator(const GenerateConfig& config, const CameraConfig& camera) :
   }
 }
 
-bool Generator::look_closer(HallPlan& plan, int attempt, const std::vector<int>& effort) const {
+RouteWishes Generator::wishes(const HallPlan& plan, int attempt) const {
   Dice dice(config_.seed, "route", attempt);
-  RouteWishes wishes;
-  wishes.clearance_m = config_.clearance_m;
-  wishes.wait_s = config_.wait_s;
-  wishes.effort = effort;
-  wishes.start = plan.entrance;
-  wishes.back_to_start = dice.chance(0.5);
-  HallPlan other = plan;
-  if (!plan_route(other, camera_, wishes).empty()) return false;
-  plan = std::move(other);
-  return true;
+  return {.clearance_m = config_.clearance_m, .wait_s = config_.wait_s, .start = plan.entrance, .back_to_start = dice.chance(0.35)};
+}
+
+bool Generator::look_again(HallPlan& plan, int attempt, const Missed& missed) const {
+  return extend_route(plan, camera_, wishes(plan, attempt), missed);
 }
 
 std::optional<HallPlan> Generator::draw(int attempt) const {
   std::optional<HallPlan> plan = draw_cell(config_, attempt);
-  if (!plan || !look_closer(*plan, attempt, {})) return std::nullopt;
+  if (!plan || !plan_route(*plan, camera_, wishes(*plan, attempt)).empty()) return std::nullopt;
   Dice dice(config_.seed, "marks", attempt);
   add_tyre_marks(*plan, dice);
   return plan;

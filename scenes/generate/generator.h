@@ -6,6 +6,7 @@
 
 #include "scenes/generate/generate_config.h"
 #include "scenes/generate/hall_plan.h"
+#include "scenes/generate/route.h"
 #include "sensors/camera_config.h"
 
 namespace waretwin::generate {
@@ -17,11 +18,12 @@ class Generator {
 
   // Draws a hall with its route; without a value where this draw does not work out. The same config and attempt give the same hall.
   std::optional<HallPlan> draw(int attempt) const;
-  // Plans the hall's route anew, looking closer at conveyors by index: effort 0 as at first, each step from more places. False where that
-  // finds no route; the plan's own one then stays.
-  bool look_closer(HallPlan& plan, int attempt, const std::vector<int>& effort) const;
+  // Adds stops to the hall's route for what a drive along it has missed. False where that finds none; the plan then stays.
+  bool look_again(HallPlan& plan, int attempt, const Missed& missed) const;
 
  private:
+  RouteWishes wishes(const HallPlan& plan, int attempt) const;
+
   GenerateConfig config_;
   CameraConfig camera_;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/pose.h"
@@ -13,13 +13,26 @@ namespace waretwin::generate {
 
 namespace {
 
-constexpr double kNearest = 0.45, kFarthest = 1.9;  // metres from a stop to the nearest of a conveyor
-constexpr double kBestRange = 1.25;                 // metres to its middle: beyond, depth gets worse
-constexpr double kFlattest = 0.20;                  // cosine to the normal below which a surface is too slanted to measure well
-constexpr double kFarthestDepth = 3.0;              // metres
-constexpr double kTwoSides = 50.0;                  // degrees between the first two directions
-constexpr double kBorder = 12.0;                    // pixels to the picture's edge
-constexpr std::size_t kMostCandidates = 220;        // per conveyor
+constexpr double kNearest = 0.45;             // metres from a stop to the nearest of a conveyor
+constexpr double kBestRange = 1.25;           // metres to its middle: beyond, depth gets worse
+constexpr double kTwoSides = 50.0;            // degrees between the first two directions
+constexpr double kBorder = 12.0;              // pixels to the picture's edge
+constexpr std::size_t kMostCandidates = 220;  // per conveyor
+
+// Which looks count.
+struct Limits {
+  double farthest = 1.7;        // metres from a stop to the nearest of the conveyor
+  double farthest_depth = 3.0;  // metres
+  double flattest = 0.2;        // cosine to the normal below which a surface is too slanted to measure well
+};
+
+// The first looks are such that they measure well. Under a floor-standing conveyor one sees from afar.
+Limits good_looks(const PlannedConveyor& conveyor) {
+  return {.farthest = std::holds_alternative<builder::TableTopConveyor>(conveyor.part) ? 1.7 : 2.2};
+}
+
+// What was missed is looked at in whatever way the camera can.
+Limits any_looks() { return {.farthest = 3.2, .farthest_depth = 3.8, .flattest = 0.09}; }
 
 // One way to look at one conveyor.
 struct Look {
@@ -30,13 +43,14 @@ struct Look {
   std::vector<bool> sees;  // by patch
 };
 
-// What may hide a conveyor: everything near it but what it stands on and itself; its own deck hides its legs.
-std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
+// What may hide a conveyor: everything near it but what it stands on, and with `itself` its own deck, which hides its legs.
+std::vector<Solid> occluders(const HallPlan& plan, std::size_t index, bool itself) {
   const PlannedConveyor& conveyor = plan.conveyors[index];
   const Eigen::Vector3d middle = conveyor.middle();
   double lowest = conveyor.at.z;
   std::vector<Solid> list;
   for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
+    if (i == index && !itself) continue;
     for (const Solid& s : plan.conveyors[i].decks()) list.push_back(s);
   }
   for (const PlacedItem& item : plan.items) {
@@ -49,19 +63,21 @@ std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
 
 class Viewer {
  public:
-  Viewer(const HallPlan& plan, const CameraConfig& camera, const FreeSpace& space, std::size_t index)
+  Viewer(const HallPlan& plan, const CameraConfig& camera, const FreeSpace& space, std::size_t index, const Limits& limits,
+         std::vector<SurfacePatch> patches, bool itself)
       : camera_(camera),
         intrinsics_(camera.intrinsics()),
         space_(space),
-        patches_(plan.conveyors[index].surface()),
-        occluders_(occluders(plan, index)),
+        limits_(limits),
+        patches_(std::move(patches)),
+        occluders_(occluders(plan, index, itself)),
         middle_(plan.conveyors[index].middle().head<2>()) {
     const std::vector<Solid> solids = plan.conveyors[index].solids();
     std::vector<std::size_t> near;
     for (std::size_t i = 0; i < space.places().size(); ++i) {
       double nearest = 1e9;
       for (const Solid& s : solids) nearest = std::min(nearest, distance(space.places()[i], s));
-      if (nearest > kNearest && nearest < kFarthest) near.push_back(i);
+      if (nearest > kNearest && nearest < limits_.farthest) near.push_back(i);
     }
     // Every n-th, so that large halls and small ones cost the same.
     const std::size_t every = std::max<std::size_t>(1, near.size() / kMostCandidates);
@@ -105,8 +121,8 @@ class Viewer {
       for (std::size_t i = 0; i < patches_.size(); ++i) {
         const SurfacePatch& patch = patches_[i];
         const Eigen::Vector3d eye = X_WC.translation(), view = eye - patch.p_W, p_C = X_CW * patch.p_W;
-        if (patch.normal.dot(view) < kFlattest * view.norm()) continue;
-        if (p_C.z() < camera_.depth_min_m + 0.03 || p_C.z() > std::min(kFarthestDepth, camera_.depth_max_m)) continue;
+        if (patch.normal.dot(view) < limits_.flattest * view.norm()) continue;
+        if (p_C.z() < camera_.depth_min_m + 0.03 || p_C.z() > std::min(limits_.farthest_depth, camera_.depth_max_m)) continue;
         const Eigen::Vector2d pixel = intrinsics_.project(p_C);
         if (!intrinsics_.contains(pixel.x() - kBorder, pixel.y() - kBorder) ||
             !intrinsics_.contains(pixel.x() + kBorder, pixel.y() + kBorder)) {
@@ -125,16 +141,27 @@ class Viewer {
   const CameraConfig& camera_;
   Intrinsics intrinsics_;
   const FreeSpace& space_;
+  Limits limits_;
   std::vector<SurfacePatch> patches_;
   std::vector<Solid> occluders_;
   Eigen::Vector2d middle_;
   std::vector<Look> looks_;
 };
 
+std::vector<bool> fresh(const std::vector<bool>& sees, const std::vector<bool>& seen) {
+  std::vector<bool> result(seen.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) result[i] = sees[i] && !seen[i];
+  return result;
+}
+
+struct Wanted {
+  double share = 0.88;  // of what can be seen
+  std::size_t least = 2, most = 8;
+  double worthwhile = 0.008;  // share of it that a further stop must add
+};
+
 // Greedy choice: each next look is the one that adds most surface, seen from near.
-std::vector<Look> choose(const Viewer& viewer, int effort, const std::vector<std::size_t>& taken) {
-  const double wanted_share = std::min(0.995, 0.93 + 0.025 * effort);
-  const std::size_t least = 2 + static_cast<std::size_t>(effort / 2), most = 4 + static_cast<std::size_t>(effort);
+std::vector<Look> choose(const Viewer& viewer, const Wanted& wanted, const std::vector<std::size_t>& taken) {
   std::vector<bool> any(viewer.patch_count(), false), seen = any;
   for (const Look& look : viewer.looks()) {
     for (std::size_t i = 0; i < any.size(); ++i) any[i] = any[i] || look.sees[i];
@@ -142,43 +169,40 @@ std::vector<Look> choose(const Viewer& viewer, int effort, const std::vector<std
   const double whole = viewer.area(any);
   std::vector<Look> chosen;
   std::vector<std::size_t> used = taken;
-  while (chosen.size() < most) {
-    if (chosen.size() >= least && viewer.area(seen) >= wanted_share * whole) break;
+  // First with the second direction apart from the first, then, where the hall has none, without.
+  const auto best_look = [&](bool apart) {
     const Look* best = nullptr;
     double best_score = 0.0;
-    const bool needs_second_side = chosen.size() == 1;
     for (const Look& look : viewer.looks()) {
       if (std::find(used.begin(), used.end(), look.place) != used.end()) continue;
-      if (needs_second_side && std::abs(to_degrees(wrap_angle(look.bearing - chosen[0].bearing))) < kTwoSides) continue;
-      std::vector<bool> fresh(seen.size());
-      for (std::size_t i = 0; i < seen.size(); ++i) fresh[i] = look.sees[i] && !seen[i];
+      if (apart && std::abs(to_degrees(wrap_angle(look.bearing - chosen[0].bearing))) < kTwoSides) continue;
       // What was seen before still counts a little: a second good look makes a better map.
-      const double gain = viewer.area(fresh) + 0.15 * viewer.area(look.sees);
+      const double gain = viewer.area(fresh(look.sees, seen)) + 0.15 * viewer.area(look.sees);
       const double score = gain / (1.0 + std::pow(std::max(0.0, look.range - kBestRange), 2));
       if (score > best_score) {
         best_score = score;
         best = &look;
       }
     }
-    if (!best) {
-      if (!needs_second_side) break;
-      // No second side: whatever adds most.
-      chosen.push_back(chosen[0]);
-      continue;
-    }
+    return best;
+  };
+  while (chosen.size() < wanted.most) {
+    if (chosen.size() >= wanted.least && viewer.area(seen) >= wanted.share * whole) break;
+    const bool second = chosen.size() == 1 && wanted.least > 1;
+    const Look* best = best_look(second);
+    if (!best && second) best = best_look(false);
+    if (!best) break;
+    if (chosen.size() >= wanted.least && viewer.area(fresh(best->sees, seen)) < wanted.worthwhile * whole) break;
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || best->sees[i];
     used.push_back(best->place);
     chosen.push_back(*best);
   }
-  std::vector<Look> unique;
-  for (const Look& look : chosen) {
-    if (std::none_of(unique.begin(), unique.end(), [&](const Look& u) { return u.place == look.place; })) unique.push_back(look);
-  }
-  return unique;
+  return chosen;
 }
 
-// A short order: nearest neighbour from the start, then 2-opt on the path with its first place fixed, and its last one where `closed`.
-std::vector<std::size_t> short_order(const std::vector<std::vector<double>>& d, bool closed) {
+// A quick order: nearest neighbour from the start, then 2-opt on the path with its first place fixed, back to it where `closed`. d[i][k] is
+// what it costs to go from i to k.
+std::vector<std::size_t> quick_order(const std::vector<std::vector<double>>& d, bool closed) {
   const std::size_t n = d.size();
   std::vector<std::size_t> order = {0};
   std::vector<bool> used(n, false);
@@ -215,47 +239,40 @@ std::vector<std::size_t> short_order(const std::vector<std::vector<double>>& d, 
 
 double rounded(double value, double step) { return std::round(value / step) * step + 0.0; }
 
-}  // namespace
+struct PlannedLook {
+  std::size_t place = 0;
+  double heading = 0.0;
+  int conveyor = 0;
+};
 
-std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes) {
-  const double radius = 0.5 * std::hypot(plan.robot.length_m, plan.robot.width_m) + wishes.clearance_m;
-  const FreeSpace space(plan, radius);
-  plan.stops.clear();
-  plan.robot.route.clear();
-  std::vector<int> unseen;
-  struct PlannedLook {
-    Look look;
-    int conveyor;
-  };
-  std::vector<PlannedLook> looks;
-  std::vector<std::size_t> taken;
-  for (std::size_t k = 0; k < plan.conveyors.size(); ++k) {
-    const Viewer viewer(plan, camera, space, k);
-    const std::vector<Look> chosen = choose(viewer, k < wishes.effort.size() ? wishes.effort[k] : 0, taken);
-    if (chosen.empty()) unseen.push_back(static_cast<int>(k));
-    for (const Look& look : chosen) {
-      looks.push_back({look, static_cast<int>(k)});
-      taken.push_back(look.place);
-    }
-  }
-  if (!unseen.empty() || space.places().empty()) {
-    if (unseen.empty()) {
-      for (std::size_t k = 0; k < plan.conveyors.size(); ++k) unseen.push_back(static_cast<int>(k));
-    }
-    return unseen;
-  }
+double turning_radius(const HallPlan& plan, const RouteWishes& wishes) {
+  return 0.5 * std::hypot(plan.robot.length_m, plan.robot.width_m) + wishes.clearance_m;
+}
 
+// Drives to all looks in a short round.
+void lay_route(HallPlan& plan, const FreeSpace& space, const RouteWishes& wishes, const std::vector<PlannedLook>& looks) {
   std::vector<std::size_t> nodes = {space.nearest(wishes.start)};
-  for (const PlannedLook& look : looks) nodes.push_back(look.look.place);
+  for (const PlannedLook& look : looks) nodes.push_back(look.place);
+  // Turning costs time as driving does.
+  const auto seconds = [&](std::size_t i, std::size_t k, double metres) {
+    const Eigen::Vector2d way = space.places()[nodes[k]] - space.places()[nodes[i]];
+    const double direction = std::atan2(way.y(), way.x());
+    double turn = i > 0 ? std::abs(wrap_angle(direction - looks[i - 1].heading)) : 0.0;
+    if (k > 0) turn += std::abs(wrap_angle(looks[k - 1].heading - direction));
+    return metres / plan.robot.speed_mps + turn / to_radians(plan.robot.turn_rate_deg_s);
+  };
   std::vector<std::vector<double>> between(nodes.size());
   parallel_for(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::vector<double> from_here = space.distances(nodes[i]);
-      for (const std::size_t node : nodes) between[i].push_back(from_here[node]);
+      for (std::size_t k = 0; k < nodes.size(); ++k) between[i].push_back(seconds(i, k, from_here[nodes[k]]));
     }
   });
-  const std::vector<std::size_t> order = short_order(between, wishes.back_to_start);
+  const std::vector<std::size_t> order = quick_order(between, wishes.back_to_start);
 
+  plan.stops.clear();
+  std::vector<Waypoint>& route = plan.robot.route;
+  route.clear();
   constexpr double kCentimetre = 0.01;
   const auto waypoint = [&](const Eigen::Vector2d& p) {
     Waypoint w;
@@ -263,7 +280,6 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
     w.y_m = rounded(p.y(), kCentimetre);
     return w;
   };
-  std::vector<Waypoint>& route = plan.robot.route;
   route.push_back(waypoint(space.places()[nodes[0]]));
   route.back().wait_s = wishes.wait_s;
   const auto drive_to = [&](std::size_t from, std::size_t to) {
@@ -274,7 +290,7 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
     drive_to(order[i - 1], order[i]);
     const PlannedLook& look = looks[order[i] - 1];
     Waypoint& stop = route.back();
-    stop.heading_deg = rounded(to_degrees(look.look.heading), 0.1);
+    stop.heading_deg = rounded(to_degrees(look.heading), 0.1);
     stop.wait_s = wishes.wait_s;
     plan.stops.push_back({{stop.x_m, stop.y_m}, *stop.heading_deg, look.conveyor});
   }
@@ -282,13 +298,54 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
     drive_to(order.back(), 0);
     route.back().wait_s = wishes.wait_s;
   }
-  if (route[0].heading_deg) return {};  // the first stop is the start
-  if (route.size() > 1) {
-    route[0].heading_deg = rounded(to_degrees(std::atan2(route[1].y_m - route[0].y_m, route[1].x_m - route[0].x_m)), 0.1);
-  } else {
-    route[0].heading_deg = 0.0;
+  if (route[0].heading_deg) return;  // the first stop is the start
+  route[0].heading_deg =
+      route.size() > 1 ? rounded(to_degrees(std::atan2(route[1].y_m - route[0].y_m, route[1].x_m - route[0].x_m)), 0.1) : 0.0;
+}
+
+}  // namespace
+
+std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes) {
+  const FreeSpace space(plan, turning_radius(plan, wishes));
+  plan.stops.clear();
+  plan.robot.route.clear();
+  std::vector<int> unseen;
+  std::vector<PlannedLook> looks;
+  std::vector<std::size_t> taken;
+  for (std::size_t k = 0; k < plan.conveyors.size(); ++k) {
+    const PlannedConveyor& conveyor = plan.conveyors[k];
+    const Viewer viewer(plan, camera, space, k, good_looks(conveyor), conveyor.surface(), true);
+    const std::vector<Look> chosen = choose(viewer, {}, taken);
+    if (chosen.empty()) unseen.push_back(static_cast<int>(k));
+    for (const Look& look : chosen) {
+      looks.push_back({look.place, look.heading, static_cast<int>(k)});
+      taken.push_back(look.place);
+    }
   }
-  return {};
+  if (unseen.empty() && !space.places().empty()) lay_route(plan, space, wishes, looks);
+  return unseen;
+}
+
+bool extend_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes, const Missed& missed) {
+  const FreeSpace space(plan, turning_radius(plan, wishes));
+  std::vector<PlannedLook> looks;
+  std::vector<std::size_t> taken;
+  for (const Stop& stop : plan.stops) {
+    looks.push_back({space.nearest(stop.place), to_radians(stop.heading_deg), stop.conveyor});
+    taken.push_back(looks.back().place);
+  }
+  const std::size_t before = looks.size();
+  for (std::size_t k = 0; k < missed.size(); ++k) {
+    if (missed[k].empty()) continue;
+    const Viewer viewer(plan, camera, space, k, any_looks(), missed[k], false);
+    for (const Look& look : choose(viewer, {.share = 0.8, .least = 0, .most = 1, .worthwhile = 0.08}, taken)) {
+      looks.push_back({look.place, look.heading, static_cast<int>(k)});
+      taken.push_back(look.place);
+    }
+  }
+  if (looks.size() == before) return false;
+  lay_route(plan, space, wishes, looks);
+  return true;
 }
 
 }  // namespace waretwin::generate

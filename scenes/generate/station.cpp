@@ -141,14 +141,15 @@ Station draw_floor_station(Dice& dice, const ConveyorFinishes& finishes, int cou
     }
   }
   // Along the wall or away from it.
-  const double turn = count > 1 ? dice.between(-4, 4) : (dice.chance(0.35) ? 90.0 : 0.0) + dice.between(-12, 12);
+  const double turn = count > 1 ? dice.between(-4, 4) : (dice.chance(0.3) ? 90.0 : 0.0) + dice.between(-9, 9);
   fit_footprint(station);
   const Eigen::Vector2d middle = station.footprint.center();
   for (PlannedConveyor& c : station.conveyors) {
     c.at = placed({0, 0, 0, turn}, placed({-middle.x(), -middle.y(), 0, 0}, c.at));
   }
   fit_footprint(station);
-  station.free_beside = 1.35;
+  const bool curved = std::holds_alternative<builder::CurveConveyor>(station.conveyors.back().part);
+  station.sides_matter = curved || station.footprint.sizes().y() > station.footprint.sizes().x();
   return station;
 }
 

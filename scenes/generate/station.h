@@ -17,6 +17,7 @@ struct Station {
   Eigen::AlignedBox2d footprint;
   // How far beyond its footprint to the left, right and front the floor must stay free, so that a vehicle can look at it.
   double free_beside = 0.5, free_in_front = 1.5;
+  bool sides_matter = false;  // it must be seen from both sides too: vehicles drive there
 };
 
 // The finishes that a hall's conveyors are drawn from: names in HallPlan::finishes.
