@@ -36,11 +36,8 @@ class SurfaceCoverage {
 
   // Seen points among the viewable ones, in [0, 1]; 0 where nothing of the object is viewable. Throws Error for an unknown id.
   double fraction(int object_id) const;
-  // The viewable points that no frame saw, with the normals of their triangles, in the world.
-  struct Point {
-    Eigen::Vector3d p_W, normal;
-  };
-  std::vector<Point> missed(int object_id) const;
+  // What a frame would add to fraction(): seen by it and by none before. For planning routes.
+  double would_add(const std::string& sensor, const Pose& X_WC, int object_id) const;
   // Share of the whole surface that is viewable, in [0, 1].
   double viewable(int object_id) const;
 

@@ -162,25 +162,33 @@ std::vector<Eigen::Vector2d> FreeSpace::way(std::size_t from, std::size_t to) co
     place = before[static_cast<std::size_t>(place)];
     steps.push_back(places_[static_cast<std::size_t>(place)]);
   }
-  // Straight pieces between some of the steps: the cheapest, where each corner counts as much as driving kCorner.
-  constexpr double kCorner = 1.2;  // metres
   if (clear(steps.front(), steps.back())) return {steps.front(), steps.back()};
-  std::vector<Eigen::Vector2d> knots;
-  constexpr std::size_t kEvery = 2;  // steps; two neighbours of the grid and the corner between them are free
-  for (std::size_t i = 0; i < steps.size(); i += kEvery) knots.push_back(steps[i]);
-  if ((steps.size() - 1) % kEvery != 0) knots.push_back(steps.back());
+  // Every third step will do nearly always.
+  for (const std::size_t every : {std::size_t{3}, std::size_t{1}}) {
+    std::vector<Eigen::Vector2d> knots;
+    for (std::size_t i = 0; i < steps.size(); i += every) knots.push_back(steps[i]);
+    if ((steps.size() - 1) % every != 0) knots.push_back(steps.back());
+    const std::vector<Eigen::Vector2d> corners = few_corners(knots);
+    if (!corners.empty()) return corners;
+  }
+  return steps;
+}
+
+// Straight pieces between some of the knots: the cheapest, where each corner counts as much as driving kCorner. Empty where there are none.
+std::vector<Eigen::Vector2d> FreeSpace::few_corners(const std::vector<Eigen::Vector2d>& knots) const {
+  constexpr double kCorner = 1.2;  // metres
   std::vector<double> cost(knots.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> previous(knots.size(), 0);
   cost[0] = 0;
   for (std::size_t i = 0; i < knots.size(); ++i) {
     for (std::size_t k = i + 1; k < knots.size(); ++k) {
       const double total = cost[i] + (knots[k] - knots[i]).norm() + kCorner;
-      // Neighbours are connected by the grid itself.
-      if (total >= cost[k] || (k > i + 1 && !clear(knots[i], knots[k]))) continue;
+      if (total >= cost[k] || !clear(knots[i], knots[k])) continue;
       cost[k] = total;
       previous[k] = i;
     }
   }
+  if (std::isinf(cost.back())) return {};
   std::vector<Eigen::Vector2d> corners = {knots.back()};
   for (std::size_t at = knots.size() - 1; at > 0; at = previous[at]) corners.push_back(knots[previous[at]]);
   std::reverse(corners.begin(), corners.end());

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "scenes/generate/hall_plan.h"
@@ -27,6 +26,7 @@ class FreeSpace {
   bool clear(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
+  std::vector<Eigen::Vector2d> few_corners(const std::vector<Eigen::Vector2d>& knots) const;
   bool is_free(const Eigen::Vector2d& p) const;
   void spread(std::size_t from, std::vector<double>& distance, std::vector<int>& before) const;
 

@@ -50,8 +50,12 @@ RouteWishes Generator::wishes(const HallPlan& plan, int attempt) const {
   return {.clearance_m = config_.clearance_m, .wait_s = config_.wait_s, .start = plan.entrance, .back_to_start = dice.chance(0.35)};
 }
 
-bool Generator::look_again(HallPlan& plan, int attempt, const Missed& missed) const {
-  return extend_route(plan, camera_, wishes(plan, attempt), missed);
+std::vector<Stop> Generator::possible_stops(const HallPlan& plan, int attempt, std::size_t conveyor) const {
+  return generate::possible_stops(plan, wishes(plan, attempt), conveyor);
+}
+
+void Generator::add_stops(HallPlan& plan, int attempt, const std::vector<Stop>& stops) const {
+  generate::add_stops(plan, wishes(plan, attempt), stops);
 }
 
 std::optional<HallPlan> Generator::draw(int attempt) const {

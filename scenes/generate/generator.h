@@ -18,8 +18,10 @@ class Generator {
 
   // Draws a hall with its route; without a value where this draw does not work out. The same config and attempt give the same hall.
   std::optional<HallPlan> draw(int attempt) const;
-  // Adds stops to the hall's route for what a drive along it has missed. False where that finds none; the plan then stays.
-  bool look_again(HallPlan& plan, int attempt, const Missed& missed) const;
+  // Where else a conveyor, by index, can be looked at (route.h).
+  std::vector<Stop> possible_stops(const HallPlan& plan, int attempt, std::size_t conveyor) const;
+  // Adds stops to the hall's route.
+  void add_stops(HallPlan& plan, int attempt, const std::vector<Stop>& stops) const;
 
  private:
   RouteWishes wishes(const HallPlan& plan, int attempt) const;

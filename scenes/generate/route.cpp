@@ -19,20 +19,13 @@ constexpr double kTwoSides = 50.0;            // degrees between the first two d
 constexpr double kBorder = 12.0;              // pixels to the picture's edge
 constexpr std::size_t kMostCandidates = 220;  // per conveyor
 
-// Which looks count.
-struct Limits {
-  double farthest = 1.7;        // metres from a stop to the nearest of the conveyor
-  double farthest_depth = 3.0;  // metres
-  double flattest = 0.2;        // cosine to the normal below which a surface is too slanted to measure well
-};
+constexpr double kFarthestDepth = 3.0;  // metres
+constexpr double kFlattest = 0.2;       // cosine to the normal below which a surface is too slanted to measure well
+constexpr double kFarAway = 3.0;        // metres to the nearest of a conveyor, of a stop that is better than none
+constexpr double kApart = 0.3;          // metres between such stops and the route's own
 
-// The first looks are such that they measure well. Under a floor-standing conveyor one sees from afar.
-Limits good_looks(const PlannedConveyor& conveyor) {
-  return {.farthest = std::holds_alternative<builder::TableTopConveyor>(conveyor.part) ? 1.7 : 2.2};
-}
-
-// What was missed is looked at in whatever way the camera can.
-Limits any_looks() { return {.farthest = 3.2, .farthest_depth = 3.8, .flattest = 0.09}; }
+// Under a floor-standing conveyor one sees from afar.
+double farthest(const PlannedConveyor& conveyor) { return std::holds_alternative<builder::TableTopConveyor>(conveyor.part) ? 1.7 : 2.2; }
 
 // One way to look at one conveyor.
 struct Look {
@@ -43,14 +36,39 @@ struct Look {
   std::vector<bool> sees;  // by patch
 };
 
-// What may hide a conveyor: everything near it but what it stands on, and with `itself` its own deck, which hides its legs.
-std::vector<Solid> occluders(const HallPlan& plan, std::size_t index, bool itself) {
+// Free places at most `reach` from a conveyor, every n-th, so that large halls and small ones cost the same.
+std::vector<std::size_t> places_near(const FreeSpace& space, const PlannedConveyor& conveyor, double reach) {
+  const std::vector<Solid> solids = conveyor.solids();
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < space.places().size(); ++i) {
+    double nearest = 1e9;
+    for (const Solid& s : solids) nearest = std::min(nearest, distance(space.places()[i], s));
+    if (nearest > kNearest && nearest < reach) near.push_back(i);
+  }
+  const std::size_t every = std::max<std::size_t>(1, near.size() / kMostCandidates);
+  std::vector<std::size_t> places;
+  for (std::size_t i = every / 2; i < near.size(); i += every) places.push_back(near[i]);
+  return places;
+}
+
+// The middle of a conveyor; long ones are looked at piece by piece as well.
+std::vector<Eigen::Vector2d> aims_at(const PlannedConveyor& conveyor) {
+  const Eigen::Vector2d middle = conveyor.middle().head<2>();
+  std::vector<Eigen::Vector2d> aims = {middle};
+  const std::vector<Solid> solids = conveyor.solids();
+  if (solids.size() != 1 || solids[0].half.x() < 0.5) return aims;
+  const Eigen::Vector2d along(std::cos(solids[0].yaw), std::sin(solids[0].yaw));
+  for (const double side : {-0.55, 0.55}) aims.push_back(middle + side * solids[0].half.x() * along);
+  return aims;
+}
+
+// What may hide a conveyor: everything near it but what it stands on; its own deck hides its legs.
+std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
   const PlannedConveyor& conveyor = plan.conveyors[index];
   const Eigen::Vector3d middle = conveyor.middle();
   double lowest = conveyor.at.z;
   std::vector<Solid> list;
   for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-    if (i == index && !itself) continue;
     for (const Solid& s : plan.conveyors[i].decks()) list.push_back(s);
   }
   for (const PlacedItem& item : plan.items) {
@@ -63,32 +81,15 @@ std::vector<Solid> occluders(const HallPlan& plan, std::size_t index, bool itsel
 
 class Viewer {
  public:
-  Viewer(const HallPlan& plan, const CameraConfig& camera, const FreeSpace& space, std::size_t index, const Limits& limits,
-         std::vector<SurfacePatch> patches, bool itself)
+  Viewer(const HallPlan& plan, const CameraConfig& camera, const FreeSpace& space, std::size_t index)
       : camera_(camera),
         intrinsics_(camera.intrinsics()),
         space_(space),
-        limits_(limits),
-        patches_(std::move(patches)),
-        occluders_(occluders(plan, index, itself)),
+        patches_(plan.conveyors[index].surface()),
+        occluders_(occluders(plan, index)),
         middle_(plan.conveyors[index].middle().head<2>()) {
-    const std::vector<Solid> solids = plan.conveyors[index].solids();
-    std::vector<std::size_t> near;
-    for (std::size_t i = 0; i < space.places().size(); ++i) {
-      double nearest = 1e9;
-      for (const Solid& s : solids) nearest = std::min(nearest, distance(space.places()[i], s));
-      if (nearest > kNearest && nearest < limits_.farthest) near.push_back(i);
-    }
-    // Every n-th, so that large halls and small ones cost the same.
-    const std::size_t every = std::max<std::size_t>(1, near.size() / kMostCandidates);
-    std::vector<std::size_t> places;
-    for (std::size_t i = every / 2; i < near.size(); i += every) places.push_back(near[i]);
-    // Long conveyors are looked at piece by piece as well.
-    std::vector<Eigen::Vector2d> aims = {middle_};
-    if (solids.size() == 1 && solids[0].half.x() > 0.5) {
-      const Eigen::Vector2d along(std::cos(solids[0].yaw), std::sin(solids[0].yaw));
-      for (const double side : {-0.55, 0.55}) aims.push_back(middle_ + side * solids[0].half.x() * along);
-    }
+    const std::vector<std::size_t> places = places_near(space, plan.conveyors[index], farthest(plan.conveyors[index]));
+    const std::vector<Eigen::Vector2d> aims = aims_at(plan.conveyors[index]);
     std::vector<std::vector<Look>> looks(places.size());
     parallel_for(places.size(), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) looks[i] = from(places[i], aims);
@@ -121,8 +122,8 @@ class Viewer {
       for (std::size_t i = 0; i < patches_.size(); ++i) {
         const SurfacePatch& patch = patches_[i];
         const Eigen::Vector3d eye = X_WC.translation(), view = eye - patch.p_W, p_C = X_CW * patch.p_W;
-        if (patch.normal.dot(view) < limits_.flattest * view.norm()) continue;
-        if (p_C.z() < camera_.depth_min_m + 0.03 || p_C.z() > std::min(limits_.farthest_depth, camera_.depth_max_m)) continue;
+        if (patch.normal.dot(view) < kFlattest * view.norm()) continue;
+        if (p_C.z() < camera_.depth_min_m + 0.03 || p_C.z() > std::min(kFarthestDepth, camera_.depth_max_m)) continue;
         const Eigen::Vector2d pixel = intrinsics_.project(p_C);
         if (!intrinsics_.contains(pixel.x() - kBorder, pixel.y() - kBorder) ||
             !intrinsics_.contains(pixel.x() + kBorder, pixel.y() + kBorder)) {
@@ -141,7 +142,6 @@ class Viewer {
   const CameraConfig& camera_;
   Intrinsics intrinsics_;
   const FreeSpace& space_;
-  Limits limits_;
   std::vector<SurfacePatch> patches_;
   std::vector<Solid> occluders_;
   Eigen::Vector2d middle_;
@@ -154,19 +154,16 @@ std::vector<bool> fresh(const std::vector<bool>& sees, const std::vector<bool>& 
   return result;
 }
 
-struct Wanted {
-  double share = 0.88;  // of what can be seen
-  std::size_t least = 2, most = 8;
-  double worthwhile = 0.008;  // share of it that a further stop must add
-};
-
 // Greedy choice: each next look is the one that adds most surface, seen from near.
-std::vector<Look> choose(const Viewer& viewer, const Wanted& wanted, const std::vector<std::size_t>& taken) {
+std::vector<Look> choose(const Viewer& viewer, const std::vector<std::size_t>& taken) {
   std::vector<bool> any(viewer.patch_count(), false), seen = any;
   for (const Look& look : viewer.looks()) {
     for (std::size_t i = 0; i < any.size(); ++i) any[i] = any[i] || look.sees[i];
   }
   const double whole = viewer.area(any);
+  constexpr double kEnough = 0.88;       // share of what can be seen
+  constexpr double kWorthwhile = 0.008;  // share that a further stop must add
+  constexpr std::size_t kLeast = 2, kMost = 8;
   std::vector<Look> chosen;
   std::vector<std::size_t> used = taken;
   // First with the second direction apart from the first, then, where the hall has none, without.
@@ -186,13 +183,13 @@ std::vector<Look> choose(const Viewer& viewer, const Wanted& wanted, const std::
     }
     return best;
   };
-  while (chosen.size() < wanted.most) {
-    if (chosen.size() >= wanted.least && viewer.area(seen) >= wanted.share * whole) break;
-    const bool second = chosen.size() == 1 && wanted.least > 1;
+  while (chosen.size() < kMost) {
+    if (chosen.size() >= kLeast && viewer.area(seen) >= kEnough * whole) break;
+    const bool second = chosen.size() == 1;
     const Look* best = best_look(second);
     if (!best && second) best = best_look(false);
     if (!best) break;
-    if (chosen.size() >= wanted.least && viewer.area(fresh(best->sees, seen)) < wanted.worthwhile * whole) break;
+    if (chosen.size() >= kLeast && viewer.area(fresh(best->sees, seen)) < kWorthwhile * whole) break;
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] || best->sees[i];
     used.push_back(best->place);
     chosen.push_back(*best);
@@ -229,6 +226,19 @@ std::vector<std::size_t> quick_order(const std::vector<std::vector<double>>& d, 
         std::reverse(turned.begin() + static_cast<std::ptrdiff_t>(i), turned.begin() + static_cast<std::ptrdiff_t>(k) + 1);
         if (length(turned) < length(order) - 1e-9) {
           order = turned;
+          better = true;
+        }
+      }
+    }
+    // And single places moved elsewhere.
+    for (std::size_t i = 1; i < n && !better; ++i) {
+      for (std::size_t k = 1; k < n && !better; ++k) {
+        if (k == i) continue;
+        std::vector<std::size_t> moved = order;
+        moved.erase(moved.begin() + static_cast<std::ptrdiff_t>(i));
+        moved.insert(moved.begin() + static_cast<std::ptrdiff_t>(k), order[i]);
+        if (length(moved) < length(order) - 1e-9) {
+          order = moved;
           better = true;
         }
       }
@@ -313,9 +323,7 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
   std::vector<PlannedLook> looks;
   std::vector<std::size_t> taken;
   for (std::size_t k = 0; k < plan.conveyors.size(); ++k) {
-    const PlannedConveyor& conveyor = plan.conveyors[k];
-    const Viewer viewer(plan, camera, space, k, good_looks(conveyor), conveyor.surface(), true);
-    const std::vector<Look> chosen = choose(viewer, {}, taken);
+    const std::vector<Look> chosen = choose(Viewer(plan, camera, space, k), taken);
     if (chosen.empty()) unseen.push_back(static_cast<int>(k));
     for (const Look& look : chosen) {
       looks.push_back({look.place, look.heading, static_cast<int>(k)});
@@ -326,26 +334,26 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
   return unseen;
 }
 
-bool extend_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes, const Missed& missed) {
+std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t conveyor) {
   const FreeSpace space(plan, turning_radius(plan, wishes));
-  std::vector<PlannedLook> looks;
-  std::vector<std::size_t> taken;
-  for (const Stop& stop : plan.stops) {
-    looks.push_back({space.nearest(stop.place), to_radians(stop.heading_deg), stop.conveyor});
-    taken.push_back(looks.back().place);
-  }
-  const std::size_t before = looks.size();
-  for (std::size_t k = 0; k < missed.size(); ++k) {
-    if (missed[k].empty()) continue;
-    const Viewer viewer(plan, camera, space, k, any_looks(), missed[k], false);
-    for (const Look& look : choose(viewer, {.share = 0.8, .least = 0, .most = 1, .worthwhile = 0.08}, taken)) {
-      looks.push_back({look.place, look.heading, static_cast<int>(k)});
-      taken.push_back(look.place);
+  std::vector<Stop> stops;
+  for (const std::size_t place : places_near(space, plan.conveyors[conveyor], kFarAway)) {
+    const Eigen::Vector2d& p = space.places()[place];
+    if (std::any_of(plan.stops.begin(), plan.stops.end(), [&](const Stop& s) { return (s.place - p).norm() < kApart; })) continue;
+    for (const Eigen::Vector2d& aim : aims_at(plan.conveyors[conveyor])) {
+      stops.push_back({p, rounded(to_degrees(std::atan2(aim.y() - p.y(), aim.x() - p.x())), 0.1), static_cast<int>(conveyor)});
     }
   }
-  if (looks.size() == before) return false;
+  return stops;
+}
+
+void add_stops(HallPlan& plan, const RouteWishes& wishes, const std::vector<Stop>& stops) {
+  const FreeSpace space(plan, turning_radius(plan, wishes));
+  std::vector<PlannedLook> looks;
+  for (const std::vector<Stop>* list : {&std::as_const(plan.stops), &stops}) {
+    for (const Stop& stop : *list) looks.push_back({space.nearest(stop.place), to_radians(stop.heading_deg), stop.conveyor});
+  }
   lay_route(plan, space, wishes, looks);
-  return true;
 }
 
 }  // namespace waretwin::generate

@@ -15,16 +15,16 @@ struct RouteWishes {
   bool back_to_start = false;
 };
 
-// For each conveyor by index, what a drive along the plan's route has missed of its surface; nothing where enough was seen.
-using Missed = std::vector<std::vector<SurfacePatch>>;
-
 // Fills plan.stops and plan.robot.route. A conveyor is looked at from two directions at least where the hall allows, from as many places
 // as it takes to see its surface (boxes stand for things, the camera's depth field is its own), each time turned towards it and standing.
 // The stops are driven to in a quick round. Returns the indices of conveyors that no free place shows; the route is then empty.
 std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes);
 
-// Adds stops from which the camera sees what was missed, up to three for each conveyor, and orders the route anew. False where no place
-// shows any of it; the plan is then as it was.
-bool extend_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes, const Missed& missed);
+// Places from which the camera may see more of a conveyor, turned to it or to one of its ends, apart from the route's own stops; farther
+// and flatter than what plan_route takes. For who can tell how much they show.
+std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t conveyor);
+
+// Adds stops, and orders the route anew.
+void add_stops(HallPlan& plan, const RouteWishes& wishes, const std::vector<Stop>& stops);
 
 }  // namespace waretwin::generate
