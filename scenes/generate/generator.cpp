@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "scenes/generate/cell.h"
 #include "scenes/generate/dice.h"
+#include "scenes/generate/flat.h"
+#include "scenes/generate/warehouse.h"
 
 namespace waretwin::generate {
 
@@ -59,10 +61,12 @@ void Generator::add_stops(HallPlan& plan, int attempt, const std::vector<Stop>& 
 }
 
 std::optional<HallPlan> Generator::draw(int attempt) const {
-  std::optional<HallPlan> plan = draw_cell(config_, attempt);
+  std::optional<HallPlan> plan = config_.style == "cell"   ? draw_cell(config_, attempt)
+                                 : config_.style == "flat" ? draw_flat(config_, attempt)
+                                                           : draw_warehouse(config_, attempt);
   if (!plan || !plan_route(*plan, camera_, wishes(*plan, attempt)).empty()) return std::nullopt;
   Dice dice(config_.seed, "marks", attempt);
-  add_tyre_marks(*plan, dice);
+  if (config_.style != "flat") add_tyre_marks(*plan, dice);
   return plan;
 }
 

@@ -26,7 +26,7 @@ bool HallPlan::fits(const Solid& solid, double margin, bool may_take_free_space)
     for (const double sy : {-1.0, 1.0}) {
       const Eigen::Vector2d corner =
           solid.centre + Eigen::Rotation2Dd(solid.yaw) * Eigen::Vector2d(sx * solid.half.x(), sy * solid.half.y());
-      if (std::abs(corner.x()) > length / 2 - 0.02 || std::abs(corner.y()) > width / 2 - 0.02) return false;
+      if (std::abs(corner.x()) > length / 2 - 0.005 || std::abs(corner.y()) > width / 2 - 0.005) return false;
     }
   }
   const auto met = [&](const Solid& other) { return collide(solid, other, margin); };

@@ -153,6 +153,45 @@ Station draw_floor_station(Dice& dice, const ConveyorFinishes& finishes, int cou
   return station;
 }
 
+Station draw_line(Dice& dice, const ConveyorFinishes& finishes, int count) {
+  Station station;
+  const double width = to_mm(dice.between(0.45, 0.70)), height = to_mm(dice.between(0.65, 0.85));
+  Eigen::Vector2d end(0, 0);
+  double heading = 0.0;
+  int curves = 0;
+  const double turn_side = dice.sign();
+  for (int i = 0; i < count; ++i) {
+    const double apart = to_mm(dice.between(0.01, 0.03));
+    const bool curve = i > 0 && i + 1 < count && curves < 2 && dice.chance(0.35);
+    const ConveyorPart part = draw_floor_part(dice, finishes, width, height, curve);
+    const auto forward = [&] { return Eigen::Vector2d(std::cos(to_radians(heading)), std::sin(to_radians(heading))); };
+    const auto left = [&] { return Eigen::Vector2d(-forward().y(), forward().x()); };
+    if (curve) {
+      const auto& c = std::get<builder::CurveConveyor>(part);
+      const Eigen::Vector2d centre = end + turn_side * c.radius * left();
+      // A left turn sweeps on from the end's own angle, a right turn back from it.
+      const double first = turn_side > 0 ? heading - 90 : heading + 90 - c.degrees;
+      station.conveyors.push_back({"", part, {centre.x(), centre.y(), 0, first}});
+      heading += turn_side * c.degrees;
+      end = centre - turn_side * c.radius * left() + apart * forward();
+      ++curves;
+    } else {
+      const double length = std::get<builder::FloorConveyor>(part).length;
+      const Eigen::Vector2d middle = end + 0.5 * length * forward();
+      station.conveyors.push_back({"", part, {middle.x(), middle.y(), 0, heading}});
+      end += (length + apart) * forward();
+    }
+  }
+  fit_footprint(station);
+  const Eigen::Vector2d middle = station.footprint.center();
+  for (PlannedConveyor& c : station.conveyors) {
+    c.at.x -= middle.x();
+    c.at.y -= middle.y();
+  }
+  fit_footprint(station);
+  return station;
+}
+
 void place_station(HallPlan& plan, const Station& station, const Placement& at) {
   for (PlannedConveyor c : station.conveyors) {
     c.name = "conveyor_" + std::to_string(plan.conveyors.size() + 1);

@@ -30,6 +30,9 @@ Station draw_table_top_station(Dice& dice, const ConveyorFinishes& finishes, int
 // `count` floor-standing segments in line, straight or curved.
 Station draw_floor_station(Dice& dice, const ConveyorFinishes& finishes, int count, double apart);
 
+// A line of `count` floor-standing segments, 1-3 cm apart as bolted ones nearly are, straight and curved, all of one width and height.
+Station draw_line(Dice& dice, const ConveyorFinishes& finishes, int count);
+
 // The station's conveyors, supports and floor marks go into the plan at a pose; names count on from the plan's conveyors.
 void place_station(HallPlan& plan, const Station& station, const builder::Placement& at);
 
