@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostDraws = 40;      // halls
+constexpr int kMostDraws = 30;      // halls
 constexpr int kMostExtensions = 2;  // of a route
 
 // A folder is replaced as a whole, so nothing but an earlier generated hall may stand in it: what somebody has changed by hand or run
@@ -118,7 +118,7 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
   for (int draw = 0; draw < kMostDraws; ++draw) {
     std::optional<generate::HallPlan> plan = generator.draw(draw);
     if (!plan) {
-      if (progress) progress("draw " + std::to_string(draw + 1) + ": no room");
+      if (progress) progress("hall " + std::to_string(draw + 1) + " has no room");
       continue;
     }
     write_file(staged.path() / "hall.glb", generate::build_glb(*plan));
@@ -139,8 +139,10 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     }
     const double worst = shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
     best_worst = std::max(best_worst, worst);
-    if (progress) progress("draw " + std::to_string(draw + 1) + ": " + percent(worst) + " of the conveyor seen least");
-    if (!enough()) continue;
+    if (!enough()) {
+      if (progress) progress("hall " + std::to_string(draw + 1) + " shows only " + percent(worst) + " of a conveyor");
+      continue;
+    }
 
     MadeHall made;
     made.name = plan->name;

@@ -32,8 +32,8 @@ struct MadeHall {
 // Draws a hall, writes it into `folder` as a scenario of its own (scenario.yaml, hall.glb, plan.png), and checks on the written files that
 // the route shows every conveyor: by depth views once a second, as the paper maps. Where it does not, the route looks closer, and after
 // that another hall is drawn; the outcome depends on the configuration alone. The folder appears when the hall is complete and replaces
-// only an earlier generated one. `progress` after each draw. Throws Error for a size that has no room for the conveyors, where no draw
-// shows them all, and for a folder that holds anything else.
+// only an earlier generated one. `progress` after each draw that was in vain. Throws Error for a size that has no room for the conveyors,
+// where no draw shows them all, and for a folder that holds anything else.
 MadeHall make_hall(const generate::GenerateConfig& config, const std::filesystem::path& folder,
                    const std::function<void(const std::string&)>& progress = {});
 

@@ -469,8 +469,8 @@ Finish floor_to_order(const std::string& key, const Eigen::Vector3d& colour, dou
 
 Finish wall_to_order(const std::string& key, const Eigen::Vector3d& colour, double reflectivity) {
   const Scalar bgr = bgr_of(colour);
-  cv::Mat t = mottled(256, 256, bgr, 3, 2, key);
-  add_stains(t, -6, 0.6, 3, key);
+  cv::Mat t = mottled(256, 256, bgr, 2, 1.5, key);
+  add_stains(t, -4, 0.6, 3, key);
   add_scratches(t, 12, 22, bgr * 0.88, 0.4, key);
   return textured(t, 2.5, 2.5, 0, 0.9, reflectivity);
 }

@@ -15,7 +15,7 @@ std::optional<HallPlan> draw_cell(const GenerateConfig& config, int attempt) {
   plan.title = "A production cell";
   plan.description = "A random production cell";
   const int count = config.conveyors > 0 ? config.conveyors : room.whole(3, 6);
-  const double clutter = config.clutter >= 0 ? config.clutter : room.between(0.35, 1.0);
+  const double clutter = config.clutter >= 0 ? config.clutter : room.between(0.45, 1.0);
   const double area = count * room.between(8.0, 10.5) + 24.0, aspect = room.between(1.2, 2.0);
   const double drawn_length = std::sqrt(area * aspect);
   const double length = config.length_m > 0 ? config.length_m : std::round(drawn_length * 10) / 10;

@@ -41,9 +41,10 @@ void add_tyre_marks(HallPlan& plan, Dice& dice) {
 }  // namespace
 
 Generator::Generator(const GenerateConfig& config, const CameraConfig& camera) : config_(config), camera_(camera) {
-  const bool sized = config.length_m > 0 || config.width_m > 0;
-  if (sized && std::min(config.length_m, config.width_m) < kSmallestSide) {
-    throw Error("size " + size_text(config) + ": too small for a vehicle to turn before a conveyor; expected at least 4x4 m");
+  for (const double side : {config.length_m, config.width_m}) {
+    if (side > 0 && side < kSmallestSide) {
+      throw Error("size " + size_text(config) + ": too small for a vehicle to turn before a conveyor; expected at least 4x4 m");
+    }
   }
 }
 

@@ -48,8 +48,8 @@ TopItem whole_foot(const Item& item, bool faces_front = false) {
 
 TopItem draw_top_item(Dice& dice) {
   const double kind = dice.unit();
-  if (kind < 0.14) return {robot_arm(dice), 0.10, 0.10};
-  if (kind < 0.36) {
+  if (kind < 0.19) return {robot_arm(dice), 0.10, 0.10};
+  if (kind < 0.39) {
     return whole_foot(bin(to_mm(dice.between(0.14, 0.34)), to_mm(dice.between(0.1, 0.24)), to_mm(dice.between(0.08, 0.16)),
                           dice.pick(kBins), dice.chance(0.5)));
   }

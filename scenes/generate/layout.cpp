@@ -139,7 +139,7 @@ void add_neighbours(HallPlan& plan, const Standing& s, double clutter, Dice& dic
     if (!dice.chance(clutter)) continue;
     const double edge = side < 0 ? f.min().x() : f.max().x();
     const double kind = dice.unit();
-    if (kind < 0.4) {
+    if (kind < 0.5) {
       const double width = to_mm(dice.between(0.6, 1.1)), depth = to_mm(std::min(f.sizes().y(), dice.between(0.5, 0.75)));
       const double height = to_mm(dice.between(0.70, 0.80));
       const Item item = table(width, depth, height, dice.chance(0.5) ? "table_top" : "beech", dice.chance(0.3));
@@ -151,7 +151,7 @@ void add_neighbours(HallPlan& plan, const Standing& s, double clutter, Dice& dic
         top.z = height;
         furnish(plan, {top, width, depth}, dice.whole(1, 3), 0.02, dice);
       }
-    } else if (kind < 0.65 && !s.station.supports.empty()) {
+    } else if (kind < 0.72 && !s.station.supports.empty()) {
       const Item item = draw_leaning_panel(dice);
       // Its upper edge just touches the side.
       const Placement local{edge + side * (item.extent.max().y() + 0.012), dice.between(-0.08, 0.12), 0, side * 90};
@@ -163,7 +163,7 @@ void add_neighbours(HallPlan& plan, const Standing& s, double clutter, Dice& dic
     }
   }
   for (const Top& top : s.station.tops) {
-    furnish(plan, {placed(s.at, top.at), top.width, top.depth}, static_cast<int>(std::lround(clutter * dice.between(0.5, 4.5))),
+    furnish(plan, {placed(s.at, top.at), top.width, top.depth}, static_cast<int>(std::lround(clutter * dice.between(1.5, 5.5))),
             kClutterGap, dice);
   }
 }

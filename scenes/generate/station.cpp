@@ -98,7 +98,7 @@ Station draw_table_top_station(Dice& dice, const ConveyorFinishes& finishes, int
   double tallest = 0.0;
   for (const auto& part : parts) tallest = std::max(tallest, part.height);
   const double front_gap = dice.between(0.03, 0.09);
-  const double top_width = to_mm(width + dice.between(0.14, 0.40)),
+  const double top_width = to_mm(width + dice.between(0.14, 0.55)),
                top_depth = to_mm(std::max(0.5, depth + front_gap + dice.between(0.05, 0.32)));
   const double height = to_mm(dice.between(0.62, std::min(0.85, 1.02 - tallest)));
   const bool on_table = dice.chance(0.3);
