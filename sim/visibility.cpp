@@ -97,7 +97,9 @@ struct SurfaceCoverage::State {
 
   std::vector<Eigen::Vector2f> free_places(const RobotConfig& robot, double spacing) const;
   void find_viewable(ObjectSurface& object, const std::vector<Eigen::Vector2f>& places) const;
-  void look(ObjectSurface& object, const CameraConfig& camera, const Pose& X_WC) const;
+  // Indices of the samples that a frame sees and none before it saw.
+  std::vector<std::size_t> newly_seen(const ObjectSurface& object, const CameraConfig& camera, const Pose& X_WC) const;
+  const CameraConfig& camera(const std::string& sensor) const;
   const ObjectSurface& object(int id) const;
 };
 
@@ -168,13 +170,15 @@ void SurfaceCoverage::State::find_viewable(ObjectSurface& object, const std::vec
   });
 }
 
-void SurfaceCoverage::State::look(ObjectSurface& object, const CameraConfig& camera, const Pose& X_WC) const {
+std::vector<std::size_t> SurfaceCoverage::State::newly_seen(const ObjectSurface& object, const CameraConfig& camera,
+                                                            const Pose& X_WC) const {
   const Intrinsics intrinsics = camera.intrinsics();
   const Eigen::Affine3d X_CW(X_WC.inverse().matrix());
   const Eigen::Vector3f eye = X_WC.translation().cast<float>();
   std::vector<Ray> rays;
-  std::vector<SurfaceSample*> aims;
-  for (SurfaceSample& sample : object.samples) {
+  std::vector<std::size_t> aims;
+  for (std::size_t i = 0; i < object.samples.size(); ++i) {
+    const SurfaceSample& sample = object.samples[i];
     if (sample.seen || !sample.viewable) continue;
     const Eigen::Vector3d p_C = X_CW * sample.p_W.cast<double>();
     if (p_C.z() < camera.depth_min_m || p_C.z() > camera.depth_max_m) continue;
@@ -183,13 +187,21 @@ void SurfaceCoverage::State::look(ObjectSurface& object, const CameraConfig& cam
     const Ray ray = sight(eye, sample);
     if (!(ray.far > 0.0f)) continue;
     rays.push_back(ray);
-    aims.push_back(&sample);
+    aims.push_back(i);
   }
   std::vector<std::uint8_t> blocked(rays.size());
   caster->occluded(rays, blocked, Coherence::kCoherent);
+  std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < aims.size(); ++i) {
-    if (!blocked[i]) aims[i]->seen = true;
+    if (!blocked[i]) seen.push_back(aims[i]);
   }
+  return seen;
+}
+
+const CameraConfig& SurfaceCoverage::State::camera(const std::string& sensor) const {
+  const auto found = cameras.find(sensor);
+  if (found == cameras.end()) throw Error("surface coverage: no camera '" + sensor + "'");
+  return found->second;
 }
 
 const ObjectSurface& SurfaceCoverage::State::object(int id) const {
@@ -219,11 +231,19 @@ SurfaceCoverage::SurfaceCoverage(std::shared_ptr<const RayCaster> ray_caster, st
 SurfaceCoverage::~SurfaceCoverage() = default;
 
 void SurfaceCoverage::add_frame(const std::string& sensor, const Pose& X_WC) {
-  const auto camera = state_->cameras.find(sensor);
-  if (camera == state_->cameras.end()) throw Error("surface coverage: no camera '" + sensor + "'");
+  const CameraConfig& camera = state_->camera(sensor);
   parallel_for(state_->objects.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) state_->look(state_->objects[i], camera->second, X_WC);
+    for (std::size_t i = begin; i < end; ++i) {
+      ObjectSurface& object = state_->objects[i];
+      for (const std::size_t k : state_->newly_seen(object, camera, X_WC)) object.samples[k].seen = true;
+    }
   });
+}
+
+void SurfaceCoverage::forget_frames() {
+  for (ObjectSurface& object : state_->objects) {
+    for (SurfaceSample& sample : object.samples) sample.seen = false;
+  }
 }
 
 double SurfaceCoverage::fraction(int object_id) const {
@@ -233,6 +253,13 @@ double SurfaceCoverage::fraction(int object_id) const {
     seen += sample.seen ? 1 : 0;
   }
   return viewable > 0 ? static_cast<double>(seen) / viewable : 0.0;
+}
+
+double SurfaceCoverage::would_add(const std::string& sensor, const Pose& X_WC, int object_id) const {
+  const ObjectSurface& object = state_->object(object_id);
+  const auto viewable = std::count_if(object.samples.begin(), object.samples.end(), [](const SurfaceSample& s) { return s.viewable; });
+  const std::size_t fresh = state_->newly_seen(object, state_->camera(sensor), X_WC).size();
+  return viewable > 0 ? static_cast<double>(fresh) / static_cast<double>(viewable) : 0.0;
 }
 
 double SurfaceCoverage::viewable(int object_id) const {

@@ -31,9 +31,13 @@ class SurfaceCoverage {
 
   // A frame that was mapped. Throws Error for an unknown sensor.
   void add_frame(const std::string& sensor, const Pose& X_WC);
+  // Forgets all frames: for another route through the same hall.
+  void forget_frames();
 
   // Seen points among the viewable ones, in [0, 1]; 0 where nothing of the object is viewable. Throws Error for an unknown id.
   double fraction(int object_id) const;
+  // What a frame would add to fraction(): seen by it and by none before. For planning routes.
+  double would_add(const std::string& sensor, const Pose& X_WC, int object_id) const;
   // Share of the whole surface that is viewable, in [0, 1].
   double viewable(int object_id) const;
 

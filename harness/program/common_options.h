@@ -42,5 +42,6 @@ Command add_record_command(CLI::App& program);
 Command add_score_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
+Command add_generate_command(CLI::App& program);
 
 }  // namespace waretwin

@@ -39,6 +39,8 @@ Finish painted(const std::string& key, const Scalar& bgr, double roughness, doub
   return textured(t, 0.8, 0.8, 0.0, roughness, reflectivity);
 }
 
+Scalar bgr_of(const Eigen::Vector3d& srgb) { return {255 * srgb.z(), 255 * srgb.y(), 255 * srgb.x()}; }
+
 Finish picture_of(const cv::Mat& picture, double roughness = 0.5, double reflectivity = 0.7) {
   Finish f = textured(picture, 1, 1, 0, roughness, reflectivity);
   f.picture = true;
@@ -437,6 +439,45 @@ const std::map<std::string, Recipe>& recipes() {
 }
 
 }  // namespace
+
+Finish paint_to_order(const std::string& key, const Eigen::Vector3d& colour, double roughness, double reflectivity) {
+  return painted(key, bgr_of(colour), roughness, reflectivity, 22);
+}
+
+Finish belt_to_order(const std::string& key, const Eigen::Vector3d& colour, double reflectivity) {
+  const Scalar bgr = bgr_of(colour);
+  cv::Mat t = mottled(256, 128, bgr, 6, 6, key);
+  for (int y = 0; y < t.rows; y += 4) cv::line(t, {0, y}, {t.cols - 1, y}, bgr * 0.86, 1);
+  add_streaks(t, 5, 32, key);
+  add_stains(t, colour.mean() > 0.4 ? -24 : 22, 0.63, 5, key);
+  const double seam = RandomStream(0, key, "seam").uniform(0) * 200;
+  cv::line(t, {static_cast<int>(seam), 0}, {static_cast<int>(seam) + 10, t.rows - 1}, bgr * 0.6, 2);
+  return textured(t, 0.9, 0.45, 0, 0.8, reflectivity);
+}
+
+Finish floor_to_order(const std::string& key, const Eigen::Vector3d& colour, double wear, double reflectivity) {
+  const Scalar bgr = bgr_of(colour);
+  cv::Mat t = mottled(512, 512, bgr, 4 + 9 * wear, 3 + 4 * wear, key);
+  add_stains(t, -12 - 18 * wear, 0.61, 3, key + " wide");
+  add_stains(t, -20 - 26 * wear, 0.71, 10, key + " spots");
+  add_scratches(t, static_cast<int>(70 * wear), 45, bgr * 0.65, 0.4, key + " dark");
+  add_scratches(t, static_cast<int>(50 * wear), 30, bgr * 1.18, 0.4, key + " pale");
+  cv::line(t, {0, 1}, {511, 1}, bgr * 0.62, 1);
+  cv::line(t, {1, 0}, {1, 511}, bgr * 0.62, 1);
+  return textured(t, 2.5, 2.5, 0.0, 0.85 - 0.35 * (1 - wear), reflectivity);
+}
+
+Finish wall_to_order(const std::string& key, const Eigen::Vector3d& colour, double reflectivity) {
+  const Scalar bgr = bgr_of(colour);
+  cv::Mat t = mottled(256, 256, bgr, 2, 1.5, key);
+  add_stains(t, -4, 0.6, 3, key);
+  add_scratches(t, 12, 22, bgr * 0.88, 0.4, key);
+  return textured(t, 2.5, 2.5, 0, 0.9, reflectivity);
+}
+
+Finish plain_to_order(const Eigen::Vector3d& colour, double roughness, double reflectivity) {
+  return plain(colour, 0.0, roughness, reflectivity);
+}
 
 Finish make_finish(const std::string& name) {
   const auto found = recipes().find(name);

@@ -7,7 +7,9 @@ namespace waretwin::builder {
 int Kit::material(const std::string& finish) {
   const auto found = materials_.find(finish);
   if (found != materials_.end()) return found->second;
-  return materials_[finish] = model.add_material(make_finish(finish));
+  const auto own = own_.find(finish);
+  const std::function<Finish()> make = own != own_.end() ? own->second : [finish] { return make_finish(finish); };
+  return materials_[finish] = model.add_material(finish, make);
 }
 
 int Kit::mesh(const std::string& name, const std::function<void(MeshDraft&)>& make) {

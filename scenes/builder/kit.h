@@ -14,8 +14,11 @@ class Kit {
  public:
   Model model;
 
-  // The material with this finish (finishes.h), added to the model on first use.
+  // The material with this finish (finishes.h, or defined here), added to the model on first use.
   int material(const std::string& finish);
+
+  // A finish of this hall's own, in place of the one of finishes.h that has its name, if any. Before the name is first used.
+  void define(const std::string& name, std::function<Finish()> finish) { own_[name] = std::move(finish); }
 
   // The mesh of this name, made on first use: parts that look the same share one. The name must therefore hold whatever the part's
   // parameters change.
@@ -30,6 +33,7 @@ class Kit {
 
  private:
   std::map<std::string, int> materials_, meshes_;
+  std::map<std::string, std::function<Finish()>> own_;
 };
 
 // "620x400": millimetres for names of meshes.

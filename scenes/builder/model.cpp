@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/pose.h"
 
 namespace waretwin::builder {
@@ -121,24 +122,32 @@ tinygltf::Primitive to_primitive(Buffer& buffer, int material, const Finish& fin
   return primitive;
 }
 
+struct DrawnFinish {
+  Finish finish;
+  std::vector<unsigned char> image;  // encoded; empty: no texture
+  std::string mime_type;
+};
+
+DrawnFinish drawn(const std::string& name, const std::function<Finish()>& make) {
+  DrawnFinish result{make(), {}, ""};
+  result.finish.name = name;
+  if (result.finish.texture.empty()) return result;
+  const bool lossless = result.finish.picture || result.finish.alpha_mask;
+  const bool done = lossless ? cv::imencode(".png", result.finish.texture, result.image, {cv::IMWRITE_PNG_COMPRESSION, 9})
+                             : cv::imencode(".jpg", result.finish.texture, result.image, {cv::IMWRITE_JPEG_QUALITY, 85});
+  WARETWIN_CHECK(done, "a drawn texture can be encoded");
+  result.mime_type = lossless ? "image/png" : "image/jpeg";
+  return result;
+}
+
 }  // namespace
 
 void MeshDraft::add(int material, const Shape& shape) { parts_[material].append(shape); }
 
 Eigen::Isometry3d Placement::pose() const { return make_upright_pose(x, y, z, to_radians(yaw_deg)); }
 
-int Model::add_material(const Finish& finish) {
-  StoredMaterial stored{finish, "", ""};
-  if (!finish.texture.empty()) {
-    std::vector<unsigned char> bytes;
-    const bool lossless = finish.picture || finish.alpha_mask;
-    const bool done = lossless ? cv::imencode(".png", finish.texture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9})
-                               : cv::imencode(".jpg", finish.texture, bytes, {cv::IMWRITE_JPEG_QUALITY, 85});
-    WARETWIN_CHECK(done, "a drawn texture can be encoded");
-    stored.image.assign(bytes.begin(), bytes.end());
-    stored.mime_type = lossless ? "image/png" : "image/jpeg";
-  }
-  materials_.push_back(std::move(stored));
+int Model::add_material(const std::string& name, std::function<Finish()> finish) {
+  materials_.push_back({name, std::move(finish)});
   return static_cast<int>(materials_.size() - 1);
 }
 
@@ -172,6 +181,19 @@ std::size_t Model::triangle_count() const {
   return count;
 }
 
+Eigen::AlignedBox3d Model::bounds() const {
+  Eigen::AlignedBox3d box;
+  std::vector<Eigen::Isometry3d> X_TN;  // a parent comes before its children
+  for (const StoredNode& node : nodes_) {
+    X_TN.push_back(node.parent < 0 ? node.pose : X_TN[static_cast<std::size_t>(node.parent)] * node.pose);
+    if (node.mesh < 0) continue;
+    for (const auto& [material, shape] : meshes_[static_cast<std::size_t>(node.mesh)].parts) {
+      for (const Vector3d& p : shape.positions) box.extend(X_TN.back() * p);
+    }
+  }
+  return box;
+}
+
 std::string Model::to_glb(const std::string& title) const {
   tinygltf::Model gltf;
   gltf.asset.version = "2.0";
@@ -185,7 +207,11 @@ std::string Model::to_glb(const std::string& title) const {
   clamp.wrapS = clamp.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
   gltf.samplers = {repeat, clamp};
 
-  for (const StoredMaterial& stored : materials_) {
+  std::vector<DrawnFinish> finishes(materials_.size());
+  parallel_for(materials_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) finishes[i] = drawn(materials_[i].name, materials_[i].finish);
+  });
+  for (const DrawnFinish& stored : finishes) {
     const Finish& finish = stored.finish;
     tinygltf::Material m;
     m.name = finish.name;
@@ -219,7 +245,7 @@ std::string Model::to_glb(const std::string& title) const {
     tinygltf::Mesh mesh;
     mesh.name = stored.name;
     for (const auto& [material, shape] : stored.parts) {
-      mesh.primitives.push_back(to_primitive(buffer, material, materials_[static_cast<std::size_t>(material)].finish, shape));
+      mesh.primitives.push_back(to_primitive(buffer, material, finishes[static_cast<std::size_t>(material)].finish, shape));
     }
     gltf.meshes.push_back(mesh);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <map>
 #include <opencv2/core.hpp>
 #include <string>
@@ -56,7 +57,9 @@ struct Lamp {
 
 class Model {
  public:
-  int add_material(const Finish& finish);
+  // A material whose looks are drawn when the file is written, all of them side by side: drawing textures is what costs time. `finish` is
+  // called once a file, from any thread, and gives the same each time.
+  int add_material(const std::string& name, std::function<Finish()> finish);
   int add_mesh(const std::string& name, const MeshDraft& draft);
   // parent -1 puts the node at the top. mesh -1: a group.
   int add_node(const std::string& name, int parent, const Eigen::Isometry3d& pose, int mesh = -1);
@@ -68,12 +71,12 @@ class Model {
   std::string to_glb(const std::string& title) const;
 
   std::size_t triangle_count() const;  // over all nodes
+  Eigen::AlignedBox3d bounds() const;  // of all nodes' meshes, in the frame of the top; empty without meshes
 
  private:
   struct StoredMaterial {
-    Finish finish;
-    std::string image;  // encoded
-    std::string mime_type;
+    std::string name;
+    std::function<Finish()> finish;
   };
   struct StoredMesh {
     std::string name;

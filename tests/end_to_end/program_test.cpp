@@ -15,7 +15,7 @@ using test::TemporaryFolder;
 TEST(Program, ExplainsItself) {
   const auto top = test::waretwin("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"run", "map", "record", "score", "render", "inspect"}) {
+  for (const char* command : {"run", "map", "record", "score", "render", "inspect", "generate"}) {
     EXPECT_NE(top.out.find(command), std::string::npos) << command;
     const auto help = test::waretwin(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;
@@ -41,6 +41,37 @@ TEST(Program, RefusesWhatItDoesNotKnowInOneLine) {
   EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --out o.jpg"), ".png");
   EXPECT_ONE_LINE(test::waretwin("render " + agiprobot() + " --out o.png --time 1000"), "--time");
   EXPECT_ONE_LINE(test::waretwin("render model.glb --out o.png --time 1 --pose 0,0,0,0,0"), "--");
+}
+
+TEST(Program, GeneratesAHallThatItRuns) {
+  const TemporaryFolder folder;
+  const std::string hall = "'" + (folder.path() / "hall").string() + "'";
+  const auto made = test::waretwin("generate --style flat --conveyors 2 --seed 4 --out " + hall);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.err, "");
+  for (const char* text : {"flat_4", "2 conveyors", "% seen", "route: ", "plan.png"}) {
+    EXPECT_NE(made.out.find(text), std::string::npos) << text << " in: " << made.out;
+  }
+  const auto inspected = test::waretwin("inspect " + hall + "/scenario.yaml --motion 20 --quiet");
+  EXPECT_EQ(inspected.exit_code, 0) << inspected.out;
+  const auto run = test::waretwin("run " + hall + "/scenario.yaml --frames 3 --quiet --out '" + (folder.path() / "out").string() + "'");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST(Program, SaysWhyItCannotGenerateAHall) {
+  const TemporaryFolder folder;
+  const std::string out = " --quiet --out '" + (folder.path() / "hall").string() + "'";
+  EXPECT_ONE_LINE(test::waretwin("generate"), "--out");
+  EXPECT_ONE_LINE(test::waretwin("generate --style castle" + out), "castle");
+  EXPECT_ONE_LINE(test::waretwin("generate --size 12" + out), "12x6");
+  EXPECT_ONE_LINE(test::waretwin("generate --size 12x6m" + out), "12x6m");
+  EXPECT_ONE_LINE(test::waretwin("generate --size nanx6" + out), "nanx6");
+  EXPECT_ONE_LINE(test::waretwin("generate --size 3x8" + out), "4x4");
+  EXPECT_ONE_LINE(test::waretwin("generate --conveyors 0" + out), "--conveyors");
+  EXPECT_ONE_LINE(test::waretwin("generate --coverage 1.5" + out), "0.95");
+  EXPECT_ONE_LINE(test::waretwin("generate --size 5x4.5 --conveyors 12" + out), "12 conveyors");
+  EXPECT_ONE_LINE(test::waretwin("generate --set generate.cluter=1" + out), "clutter");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "bad input leaves nothing behind";
 }
 
 TEST(Program, NamesAMissingFile) {

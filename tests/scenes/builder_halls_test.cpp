@@ -11,10 +11,18 @@
 #include "core/random.h"
 #include "scenes/builder/halls.h"
 #include "scenes/scenario.h"
+#include "tests/scenes/hall_checks.h"
 #include "tests/support/test_data.h"
 
 namespace waretwin {
 namespace {
+
+using test::background_in;
+using test::joined;
+using test::on_the_route;
+using test::overlaps;
+using test::Solid;
+using test::solid_of;
 
 struct Hall {
   Scenario scenario;
@@ -25,70 +33,6 @@ Hall load(const std::string& name) {
   Scenario scenario = load_scenario(test::repository() / "scenes" / name / "scenario.yaml");
   Scene scene = build_scene(scenario);
   return {std::move(scenario), std::move(scene)};
-}
-
-// An upright box that stands anywhere, for overlap with triangles.
-struct Solid {
-  Eigen::Vector3d centre, half;
-  double yaw;
-};
-
-Solid solid_of(const Cuboid& c, double shrink_xy, double bottom, double top) {
-  return {{c.centre.x(), c.centre.y(), 0.5 * (bottom + top)},
-          {0.5 * c.size.x() - shrink_xy, 0.5 * c.size.y() - shrink_xy, 0.5 * (top - bottom)},
-          c.yaw};
-}
-
-// Separating axes of a box and a triangle (Akenine-Moeller): three faces, the triangle's plane, nine products of edges.
-bool overlaps(const Solid& s, const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W, const Eigen::Vector3d& c_W) {
-  const Eigen::AngleAxisd R_SW(-s.yaw, Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d v[3] = {R_SW * (a_W - s.centre), R_SW * (b_W - s.centre), R_SW * (c_W - s.centre)};
-  const auto separates = [&](const Eigen::Vector3d& axis) {
-    if (axis.squaredNorm() < 1e-18) return false;
-    const double p0 = axis.dot(v[0]), p1 = axis.dot(v[1]), p2 = axis.dot(v[2]);
-    const double reach = s.half.dot(axis.cwiseAbs());
-    return std::min({p0, p1, p2}) > reach || std::max({p0, p1, p2}) < -reach;
-  };
-  const Eigen::Vector3d edges[3] = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
-  for (int k = 0; k < 3; ++k) {
-    if (separates(Eigen::Vector3d::Unit(k))) return false;
-  }
-  if (separates(edges[0].cross(edges[1]))) return false;
-  for (int k = 0; k < 3; ++k) {
-    for (const Eigen::Vector3d& edge : edges) {
-      if (separates(Eigen::Vector3d::Unit(k).cross(edge))) return false;
-    }
-  }
-  return true;
-}
-
-// Names of the instances outside any object that reach into the solid; the floor's marks and the floor itself lie below 2 mm.
-std::set<std::string> background_in(const Scene& scene, const Solid& solid) {
-  std::set<std::string> names;
-  const double reach = solid.half.norm();
-  for (const Instance& instance : scene.instances) {
-    if (instance.object >= 0) continue;
-    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-    Eigen::AlignedBox3f box;
-    for (const Eigen::Vector3f& p_M : mesh.positions) box.extend(instance.X_WM * p_M);
-    const Eigen::Vector3d nearest = solid.centre.cwiseMax(box.min().cast<double>()).cwiseMin(box.max().cast<double>());
-    if ((nearest - solid.centre).norm() > reach) continue;
-    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-      const auto corner = [&](std::size_t k) {
-        return Eigen::Vector3d((instance.X_WM * mesh.positions[mesh.triangles[t + k]]).cast<double>());
-      };
-      if (!overlaps(solid, corner(0), corner(1), corner(2))) continue;
-      names.insert(instance.name);
-      break;
-    }
-  }
-  return names;
-}
-
-std::string joined(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += name + " ";
-  return text;
 }
 
 class ShippedHall : public testing::TestWithParam<std::string> {};
@@ -161,47 +105,9 @@ TEST_P(ShippedHall, ConveyorsDoNotMeet) {
   }
 }
 
-// The body, 3 cm wider on every side, at each turn in steps of 3 deg and along each straight piece.
 TEST_P(ShippedHall, RouteIsClear) {
   const Hall hall = load(GetParam());
-  const RobotConfig& robot = hall.scenario.robot;
-  const double margin = 0.03, low = 0.005, high = 1.45;  // up to the camera
-  std::set<std::string> met;
-  const auto check = [&](const Eigen::Vector2d& at, double length, double yaw) {
-    const Solid body{{at.x(), at.y(), 0.5 * (low + high)}, {0.5 * length + margin, 0.5 * robot.width_m + margin, 0.5 * (high - low)}, yaw};
-    for (const std::string& name : background_in(hall.scene, body)) {
-      met.insert(name + " at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ") yaw " + std::to_string(to_degrees(yaw)));
-    }
-    for (const TrueObject& object : hall.scene.objects) {
-      Cuboid box;
-      box.centre = body.centre;
-      box.size = 2 * body.half;
-      box.yaw = yaw;
-      if (intersection_volume(box, object.cuboid) > 0) met.insert(object.name);
-    }
-  };
-  const auto turn = [&](const Eigen::Vector2d& at, double from, double to) {
-    const double angle = wrap_angle(to - from);
-    const int steps = 1 + static_cast<int>(std::abs(angle) / to_radians(3.0));
-    for (int k = 1; k <= steps; ++k) check(at, robot.length_m, from + angle * k / steps);
-  };
-  Eigen::Vector2d at(robot.route[0].x_m, robot.route[0].y_m);
-  ASSERT_TRUE(robot.route[0].heading_deg.has_value());
-  double yaw = to_radians(*robot.route[0].heading_deg);
-  check(at, robot.length_m, yaw);
-  for (std::size_t i = 1; i < robot.route.size(); ++i) {
-    const Waypoint& next = robot.route[i];
-    const Eigen::Vector2d to(next.x_m, next.y_m), way = to - at;
-    const double heading = std::atan2(way.y(), way.x()) + (next.reverse ? std::numbers::pi : 0.0);
-    turn(at, yaw, heading);
-    check(0.5 * (at + to), robot.length_m + way.norm(), heading);
-    yaw = heading;
-    at = to;
-    if (next.heading_deg) {
-      turn(at, yaw, to_radians(*next.heading_deg));
-      yaw = to_radians(*next.heading_deg);
-    }
-  }
+  const std::set<std::string> met = on_the_route(hall.scene, hall.scenario.robot, 0.03);
   EXPECT_TRUE(met.empty()) << joined(met);
 }
 

@@ -43,21 +43,25 @@ Profile slotted_profile(double width, double height) {
           {-w, height}};
 }
 
+// What a mesh's name says of a finish that is not the usual one.
+std::string marked(const std::string& finish, const std::string& usual) { return finish == usual ? "" : "_" + finish; }
+
 Shape bolt(const Vector3d& at, const Vector3d& out, double radius) { return cylinder(at, at + out * 0.0045, radius, 6); }
 
 }  // namespace
 
 int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const TableTopConveyor& c) {
-  const std::string mesh_name =
-      std::string("table_top_conveyor_") + (c.rollers ? "rollers_" : "belt_") + in_mm({c.length, c.width, c.height});
+  const TableTopConveyor usual;
+  const std::string mesh_name = std::string("table_top_conveyor_") + (c.rollers ? "rollers_" : "belt_") +
+                                in_mm({c.length, c.width, c.height}) + marked(c.rail, usual.rail) +
+                                (c.rollers ? marked(c.roller, usual.roller) : marked(c.belt, usual.belt));
   const int node = kit.place(c.name, parent, at, mesh_name, [&](MeshDraft& draft) {
     const double rail_height = 0.042, profile_width = 0.036, profile_height = c.height - rail_height - 0.022;
     const double inset = 0.005;  // bolts stay inside the rail's outline
     // The base rail: two green beams along, joined by two cross beams and a floor plate.
     for (const double side : {-1.0, 1.0}) {
-      draft.add(kit.material("green_paint"), standing_box(c.length, 0.075, rail_height, 0.004).move(0, side * (c.width / 2 - 0.0375), 0));
-      draft.add(kit.material("green_paint"),
-                standing_box(0.06, c.width - 0.15, rail_height - 0.006).move(side * (c.length / 2 - 0.05), 0, 0));
+      draft.add(kit.material(c.rail), standing_box(c.length, 0.075, rail_height, 0.004).move(0, side * (c.width / 2 - 0.0375), 0));
+      draft.add(kit.material(c.rail), standing_box(0.06, c.width - 0.15, rail_height - 0.006).move(side * (c.length / 2 - 0.05), 0, 0));
       // Side profile, slots outside.
       Shape profile = extruded(slotted_profile(profile_width, profile_height), c.length - 0.012);
       if (side < 0) profile.rotate(Vector3d::UnitZ(), 180);
@@ -87,14 +91,14 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
       const int count = static_cast<int>((c.length - 2 * r) / c.roller_pitch) + 1;
       for (int i = 0; i < count; ++i) {
         const double x = (i - (count - 1) / 2.0) * (c.length - 2 * r - 0.004) / (count - 1);
-        draft.add(kit.material("roller_black"), cylinder({x, -between / 2, c.height - r}, {x, between / 2, c.height - r}, r, 20));
+        draft.add(kit.material(c.roller), cylinder({x, -between / 2, c.height - r}, {x, between / 2, c.height - r}, r, 20));
         for (const double side : {-1.0, 1.0}) {
           draft.add(kit.material("steel"),
                     cylinder({x, side * between / 2, c.height - r}, {x, side * (between / 2 + 0.006), c.height - r}, 0.007, 8));
         }
       }
     } else {
-      draft.add(kit.material("rubber_belt"), belt_loop(c.length - 0.004, between, c.height, 0.052));
+      draft.add(kit.material(c.belt), belt_loop(c.length - 0.004, between, c.height, 0.052));
     }
   });
   kit.place(c.name + "_label", node, {0.16 - c.length / 2, -c.width / 2 + 0.0045, 0.062}, "label_type_90x45", [&](MeshDraft& draft) {
@@ -106,15 +110,15 @@ int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const Tabl
 
 int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorConveyor& c) {
   const std::string kind = c.rollers ? "roller" : "belt";
-  const std::string size = in_mm({c.length, c.width, c.height});
+  const std::string frame = c.frame.empty() ? (c.rollers ? "green_paint" : "blue_paint") : c.frame;
+  const std::string size = in_mm({c.length, c.width, c.height}) + marked(c.frame, "") + (c.rollers ? "" : marked(c.belt, "rubber_belt"));
   const double frame_height = 0.12, frame_width = 0.03, inner = c.width - 2 * frame_width;
   const double rail_top = c.height + (c.rollers ? 0.02 : 0.01);
   const int node = kit.group(c.name, parent, at);
   kit.place(c.name + "_frame", node, {}, "floor_conveyor_" + kind + "_" + size, [&](MeshDraft& draft) {
     for (const double side : {-1.0, 1.0}) {
       const double y = side * (c.width - frame_width) / 2;
-      draft.add(kit.material(c.rollers ? "green_paint" : "blue_paint"),
-                bevelled_box(c.length, frame_width, frame_height, 0.004).move(0, y, rail_top - frame_height / 2));
+      draft.add(kit.material(frame), bevelled_box(c.length, frame_width, frame_height, 0.004).move(0, y, rail_top - frame_height / 2));
       const int bolts = std::max(2, static_cast<int>(c.length / 0.2));
       for (int i = 0; i < bolts; ++i) {
         const double x = (i + 0.5) / bolts * c.length - c.length / 2;
@@ -122,7 +126,7 @@ int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorCon
                                                        {x, side * (c.width / 2 + 0.004), rail_top - 0.05}, 0.008, 6));
       }
     }
-    if (!c.rollers) draft.add(kit.material("rubber_belt"), belt_loop(c.length - 0.01, inner - 0.02, c.height, 0.09));
+    if (!c.rollers) draft.add(kit.material(c.belt), belt_loop(c.length - 0.01, inner - 0.02, c.height, 0.09));
     // Legs every two metres at most.
     const int pairs = std::max(2, static_cast<int>(std::ceil(c.length / 2.0)) + 1);
     for (int i = 0; i < pairs; ++i) {
@@ -141,8 +145,8 @@ int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorCon
   });
   if (c.rollers) {
     const int count = std::max(2, static_cast<int>(c.length / c.roller_pitch));
-    const int roller = kit.mesh("roller_" + in_mm({inner}), [&](MeshDraft& draft) {
-      draft.add(kit.material("roller_steel"), cylinder({0, -inner / 2, 0}, {0, inner / 2, 0}, 0.025, 14));
+    const int roller = kit.mesh("roller_" + in_mm({inner}) + marked(c.roller, "roller_steel"), [&](MeshDraft& draft) {
+      draft.add(kit.material(c.roller), cylinder({0, -inner / 2, 0}, {0, inner / 2, 0}, 0.025, 14));
     });
     for (int i = 0; i < count; ++i) {
       const double x = ((i + 0.5) / count - 0.5) * c.length;
@@ -154,7 +158,8 @@ int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorCon
 }
 
 int add_curve_conveyor(Kit& kit, int parent, const Placement& at, const CurveConveyor& c) {
-  const std::string size = in_mm({c.radius, c.width, c.height}) + "_" + std::to_string(std::lround(c.degrees));
+  const std::string size = in_mm({c.radius, c.width, c.height}) + "_" + std::to_string(std::lround(c.degrees)) + marked(c.frame, "") +
+                           (c.belt ? marked(c.belt_finish, "rubber_belt") : "");
   const double frame_height = 0.12, frame_width = 0.03, rail_top = c.height + (c.belt ? 0.01 : 0.02);
   const double inside = c.radius - c.width / 2, outside = c.radius + c.width / 2, inner = c.width - 2 * frame_width;
   const int steps = std::max(4, static_cast<int>(c.degrees / 6));
@@ -163,11 +168,11 @@ int add_curve_conveyor(Kit& kit, int parent, const Placement& at, const CurveCon
     const auto ring = [&](double r0, double r1, double z0, double z1) {
       return swept({{r0, z0}, {r1, z0}, {r1, z1}, {r0, z1}}, c.degrees, steps);
     };
-    const int paint = kit.material(c.belt ? "blue_paint" : "green_paint");
+    const int paint = kit.material(c.frame.empty() ? (c.belt ? "blue_paint" : "green_paint") : c.frame);
     draft.add(paint, ring(inside, inside + frame_width, rail_top - frame_height, rail_top));
     draft.add(paint, ring(outside - frame_width, outside, rail_top - frame_height, rail_top));
     if (c.belt)
-      draft.add(kit.material("rubber_belt"), ring(inside + frame_width + 0.01, outside - frame_width - 0.01, c.height - 0.05, c.height));
+      draft.add(kit.material(c.belt_finish), ring(inside + frame_width + 0.01, outside - frame_width - 0.01, c.height - 0.05, c.height));
     for (const double share : {0.08, 0.5, 0.92}) {
       const double a = to_radians(c.degrees * share);
       const Vector3d out(std::cos(a), std::sin(a), 0);
@@ -184,8 +189,8 @@ int add_curve_conveyor(Kit& kit, int parent, const Placement& at, const CurveCon
     }
   });
   if (!c.belt) {
-    const int roller = kit.mesh("curve_roller_" + in_mm({inner}), [&](MeshDraft& draft) {
-      draft.add(kit.material("roller_steel"),
+    const int roller = kit.mesh("curve_roller_" + in_mm({inner}) + marked(c.roller, "roller_steel"), [&](MeshDraft& draft) {
+      draft.add(kit.material(c.roller),
                 turned({{0, 0}, {0.018, 0}, {0.027, inner}, {0, inner}}, 14).rotate(Vector3d::UnitY(), 90).move(-inner / 2, 0, 0));
     });
     const int count = static_cast<int>(c.degrees / c.roller_pitch_deg);

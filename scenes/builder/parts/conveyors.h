@@ -15,6 +15,7 @@ struct TableTopConveyor {
   double length = 0.60, width = 0.40, height = 0.15;  // x, y, z in metres
   bool rollers = false;
   double roller_pitch = 0.062;
+  std::string rail = "green_paint", belt = "rubber_belt", roller = "roller_black";  // finishes
 };
 int add_table_top_conveyor(Kit& kit, int parent, const Placement& at, const TableTopConveyor& c);
 
@@ -25,6 +26,8 @@ struct FloorConveyor {
   double height = 0.75;               // of the running surface
   bool rollers = true;
   double roller_pitch = 0.10;
+  // Finishes; an empty frame is green with rollers and blue with a belt.
+  std::string frame = {}, belt = "rubber_belt", roller = "roller_steel";
 };
 int add_floor_conveyor(Kit& kit, int parent, const Placement& at, const FloorConveyor& c);
 
@@ -35,6 +38,7 @@ struct CurveConveyor {
   double radius = 1.0, width = 0.60, height = 0.75, degrees = 90.0;
   double roller_pitch_deg = 6.0;
   bool belt = false;
+  std::string frame = {}, belt_finish = "rubber_belt", roller = "roller_steel";  // as above
 };
 int add_curve_conveyor(Kit& kit, int parent, const Placement& at, const CurveConveyor& c);
 

@@ -41,9 +41,9 @@ int add_wall(Kit& kit, int parent, const std::string& name, const Wall& wall) {
   });
 }
 
-int add_floor(Kit& kit, int parent, double length, double width) {
+int add_floor(Kit& kit, int parent, double length, double width, const std::string& finish) {
   return kit.place("floor", parent, {}, "floor", [&](MeshDraft& draft) {
-    draft.add(kit.material("concrete_floor"), rectangle({-length / 2, -width / 2, 0}, {length, 0, 0}, {0, width, 0}));
+    draft.add(kit.material(finish), rectangle({-length / 2, -width / 2, 0}, {length, 0, 0}, {0, width, 0}));
   });
 }
 

@@ -21,7 +21,7 @@ struct Wall {
 };
 int add_wall(Kit& kit, int parent, const std::string& name, const Wall& wall);
 
-int add_floor(Kit& kit, int parent, double length, double width);  // centred on the origin
+int add_floor(Kit& kit, int parent, double length, double width, const std::string& finish = "concrete_floor");  // centred on the origin
 int add_ceiling(Kit& kit, int parent, double length, double width, double height);
 
 // A strip of tape on the floor along a polyline (metres), `width` wide.

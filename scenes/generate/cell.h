@@ -1,0 +1,14 @@
+// Random production cells, like the AgiProbot's: stations along the walls and as islands, with their clutter.
+#pragma once
+
+#include <optional>
+
+#include "scenes/generate/generate_config.h"
+#include "scenes/generate/hall_plan.h"
+
+namespace waretwin::generate {
+
+// One draw, still without a route. Without a value where this draw has no room for all conveyors.
+std::optional<HallPlan> draw_cell(const GenerateConfig& config, int attempt);
+
+}  // namespace waretwin::generate
