@@ -7,6 +7,7 @@
 #include "mapper/detect/boxes_detector.h"
 #include "mapper/detect/yolo_detector.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
+#include "mapper/integrate/projective_integrator.h"
 #include "mapper/localise/laser_icp_localiser.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/segment/paper_segmenter.h"
@@ -46,6 +47,11 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   return std::make_unique<NoDetector>();
 }
 
+std::unique_ptr<Integrator> make_integrator(const TsdfConfig& config) {
+  if (config.method == "projection") return std::make_unique<ProjectiveIntegrator>(config);
+  return std::make_unique<GroupedRayIntegrator>(config);
+}
+
 }  // namespace
 
 Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
@@ -54,7 +60,7 @@ Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
   stages.detector = make_detector(config);
   stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
   stages.associator = std::make_unique<PaperAssociator>(config.associate);
-  stages.integrator = std::make_unique<GroupedRayIntegrator>(config.integrate);
+  stages.integrator = make_integrator(config.integrate);
   return stages;
 }
 

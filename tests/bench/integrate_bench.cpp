@@ -5,12 +5,16 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <type_traits>
 
 #include "core/parallel.h"
+#include "mapper/integrate/depth_pyramid.h"
 #include "mapper/integrate/free_space.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/integrate/mesher.h"
 #include "mapper/integrate/point_groups.h"
+#include "mapper/integrate/projective_integrator.h"
+#include "mapper/integrate/surface_patches.h"
 #include "tests/mapper/integrate_scene.h"
 
 namespace waretwin {
@@ -68,6 +72,13 @@ float back_project(const View& v) {
   return rows.front();
 }
 
+template <class SomeIntegrator>
+TsdfConfig config_of() {
+  TsdfConfig config;
+  config.method = std::is_same_v<SomeIntegrator, ProjectiveIntegrator> ? "projection" : "rays";
+  return config;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -79,11 +90,12 @@ void BackProjection(benchmark::State& state) {
 }
 BENCHMARK(BackProjection)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
+template <class SomeIntegrator>
 void Integrate(benchmark::State& state) {
-  TsdfConfig config;
+  TsdfConfig config = config_of<SomeIntegrator>();
   config.carve = state.range(0) != 0;
   TsdfVolume volume(config);
-  GroupedRayIntegrator integrator(config);
+  SomeIntegrator integrator(config);
   double bound = 0.0, own = 0.0, valid = 0.0, depth = 0.0;
   for (const View& v : views()) {
     for (int row = 0; row < camera().height; ++row) {
@@ -111,7 +123,36 @@ void Integrate(benchmark::State& state) {
   state.counters["mean_depth_m"] = depth / valid;
   state.counters["map_MB"] = static_cast<double>(volume.bytes()) / 1e6;
 }
-BENCHMARK(Integrate)->ArgName("carve")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(Integrate<GroupedRayIntegrator>)
+    ->ArgName("carve")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+BENCHMARK(Integrate<ProjectiveIntegrator>)
+    ->ArgName("carve")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+
+void MakePatches(benchmark::State& state) {
+  const TsdfConfig config = config_of<ProjectiveIntegrator>();
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& v = views()[i++ % views().size()];
+    benchmark::DoNotOptimize(make_patches(v.in.frame, camera(), v.in.labels, config));
+  }
+}
+BENCHMARK(MakePatches)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+
+void MakeDepthPyramid(benchmark::State& state) {
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(DepthPyramid(views()[i++ % views().size()].in.frame.depth).largest());
+}
+BENCHMARK(MakeDepthPyramid)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 void GroupPoints(benchmark::State& state) {
   const TsdfConfig config;
