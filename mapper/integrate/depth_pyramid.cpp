@@ -51,13 +51,25 @@ DepthPyramid::DepthPyramid(const cv::Mat& depth) {
 DepthPyramid::Range DepthPyramid::range(float u, float v, float radius) const {
   int level = 0;
   while (level + 1 < static_cast<int>(levels_.size()) && static_cast<float>(4 << level) < 2.0f * radius) ++level;
+  return range_at(level, u - radius, v - radius, u + radius, v + radius);
+}
+
+DepthPyramid::Range DepthPyramid::range(float u0, float v0, float u1, float v1) const {
+  // Up to five tiles along an edge: finer ones hold less of what lies around.
+  const float edge = 0.25f * std::max(u1 - u0, v1 - v0);
+  int level = 0;
+  while (level + 1 < static_cast<int>(levels_.size()) && static_cast<float>(4 << level) < edge) ++level;
+  return range_at(level, u0, v0, u1, v1);
+}
+
+DepthPyramid::Range DepthPyramid::range_at(int level, float u0, float v0, float u1, float v1) const {
   const Level& tiles = levels_[static_cast<std::size_t>(level)];
   const float per_pixel = 1.0f / static_cast<float>(4 << level);
   const auto tile = [&](float pixel, int count) {
     return std::clamp(static_cast<int>(std::floor((pixel + 0.5f) * per_pixel)), 0, count - 1);
   };
-  const int x0 = tile(u - radius, tiles.width), x1 = tile(u + radius, tiles.width);
-  const int y0 = tile(v - radius, tiles.height), y1 = tile(v + radius, tiles.height);
+  const int x0 = tile(u0, tiles.width), x1 = tile(u1, tiles.width);
+  const int y0 = tile(v0, tiles.height), y1 = tile(v1, tiles.height);
   Range range;
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
@@ -76,22 +88,30 @@ DepthPyramid::Surroundings DepthPyramid::surroundings(float radius) const {
 }
 
 void DepthPyramid::base_row(const cv::Mat& depth, int row, Level& base) {
-  for (int x = 0; x < base.width; ++x) {
-    const int u1 = std::min(depth.cols, 4 * x + 4), v1 = std::min(depth.rows, 4 * row + 4);
-    float smallest = kFar, largest = 0.0f;
-    int valid = 0, all = 0;
-    for (int v = 4 * row; v < v1; ++v) {
-      const float* line = depth.ptr<float>(v);
-      for (int u = 4 * x; u < u1; ++u) {
-        const bool ok = line[u] > 0.0f;
-        smallest = std::min(smallest, ok ? line[u] : kFar);
-        largest = std::max(largest, ok ? line[u] : 0.0f);
-        valid += ok;
-        ++all;
-      }
+  // Down the rows first, per column of pixels.
+  const int v0 = 4 * row, rows = std::min(4, depth.rows - v0), width = depth.cols;
+  const auto columns = static_cast<std::size_t>(base.width) * 4;
+  std::vector<float> lowest(columns, kFar), highest(columns, 0.0f), valid(columns, 0.0f);
+  const float* const line = depth.ptr<float>(v0);
+  const std::size_t stride = depth.step1();
+  for (int r = 0; r < rows; ++r) {
+    const float* const z = line + static_cast<std::size_t>(r) * stride;
+    float *const low = lowest.data(), *const high = highest.data(), *const count = valid.data();
+    for (int u = 0; u < width; ++u) {
+      const bool ok = z[u] > 0.0f;
+      const float near_z = ok ? z[u] : kFar, far_z = ok ? z[u] : 0.0f;
+      low[u] = near_z < low[u] ? near_z : low[u];
+      high[u] = far_z > high[u] ? far_z : high[u];
+      count[u] += ok ? 1.0f : 0.0f;
     }
-    base.smallest[base.at(x, row)] = 2 * valid >= all ? smallest : 0.0f;
-    base.largest[base.at(x, row)] = largest;
+  }
+  for (int x = 0; x < base.width; ++x) {
+    const float all = static_cast<float>(rows * std::min(4, width - 4 * x));
+    const auto u = static_cast<std::size_t>(4 * x);
+    const float count = valid[u] + valid[u + 1] + valid[u + 2] + valid[u + 3];
+    const float low = std::min(std::min(lowest[u], lowest[u + 1]), std::min(lowest[u + 2], lowest[u + 3]));
+    base.smallest[base.at(x, row)] = 2.0f * count >= all ? low : 0.0f;
+    base.largest[base.at(x, row)] = std::max(std::max(highest[u], highest[u + 1]), std::max(highest[u + 2], highest[u + 3]));
   }
 }
 

@@ -20,6 +20,8 @@ class DepthPyramid {
   };
   // Over all tiles that touch the square of half-width `radius` around (u, v), all in pixels.
   Range range(float u, float v, float radius) const;
+  // The same for a rectangle, over smaller tiles: tighter, and slower.
+  Range range(float u0, float v0, float u1, float v1) const;
   float largest() const { return levels_.back().largest[0]; }
 
   // For each tile of a level the smallest depth of it and its eight neighbours: a lower limit for every square with its middle in the
@@ -41,6 +43,7 @@ class DepthPyramid {
     }
     void allocate();
   };
+  Range range_at(int level, float u0, float v0, float u1, float v1) const;
   static void base_row(const cv::Mat& depth, int row, Level& base);
   static void look_around(Level& level);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,19 +18,36 @@ namespace waretwin {
 namespace {
 
 constexpr std::size_t kColumnsPerPiece = 16, kBlocksPerPiece = 32;
-constexpr int kSlice = 64;  // voxels of one layer of a block
+constexpr int kPart = 64;  // voxels of an eighth of a block
+constexpr float kFar = std::numeric_limits<float>::infinity();
 
-enum class Seen : std::uint8_t { free, mixed };
+// What a frame says about a box: nothing, that it is free as a whole, or something else for each voxel.
+enum class Seen : std::uint8_t { nothing, free, mixed };
 
 struct Candidate {
   Eigen::Vector3i index;
   Seen seen = Seen::mixed;
 };
 
-// One layer of a block as the camera sees it.
-struct Layer {
-  std::array<float, kSlice> x, y, z;  // camera's frame, metres
-  std::array<std::int32_t, kSlice> patch, around;
+// A cube of 4 x 4 x 4 voxels, an eighth of a block, as the camera sees it.
+struct Part {
+  std::array<float, kPart> x, y, z;  // of each voxel's centre: camera's frame, metres
+  std::array<std::int32_t, kPart> patch, around;
+};
+
+// Bounds of a box in the picture and in depth.
+struct Extent {
+  float u0 = kFar, v0 = kFar, u1 = -kFar, v1 = -kFar;  // pixels
+  float near = kFar, far = -kFar;                      // metres
+
+  void add(float u, float v, float z) {
+    u0 = std::min(u0, u);
+    u1 = std::max(u1, u);
+    v0 = std::min(v0, v);
+    v1 = std::max(v1, v);
+    near = std::min(near, z);
+    far = std::max(far, z);
+  }
 };
 
 // The voxels' positions and what they project into; `outside` is the patch of those that the picture does not show.
@@ -42,29 +60,32 @@ struct Projection {
   std::int32_t outside;
 };
 
-void project(const Projection& c, const Eigen::Vector3f& start, const Eigen::Vector3f& along_x, const Eigen::Vector3f& along_y,
-             Layer& out) {
-  const float sx = start.x(), sy = start.y(), sz = start.z();
-  const float ax = along_x.x(), ay = along_x.y(), az = along_x.z();
-  const float bx = along_y.x(), by = along_y.y(), bz = along_y.z();
-  for (int i = 0; i < kSlice; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const auto column = static_cast<float>(i & 7), row = static_cast<float>(i >> 3);
-    const float x = sx + ax * column + bx * row, y = sy + ay * column + by * row, z = sz + az * column + bz * row;
-    const bool before = (z > c.nearest) & (z <= c.farthest);
-    const float inverse = 1.0f / (before ? z : 1.0f);
-    // From the picture's left upper corner, so that cutting off rounds down.
-    const float u = c.fx * x * inverse + c.cx + 0.5f, v = c.fy * y * inverse + c.cy + 0.5f;
-    const bool inside = before & (u >= 0.0f) & (v >= 0.0f) & (u < c.right) & (v < c.bottom);
-    const float uu = inside ? u : 0.0f, vv = inside ? v : 0.0f;
-    const auto patch =
-        static_cast<std::int32_t>(vv * c.patches_per_pixel) * c.patch_width + static_cast<std::int32_t>(uu * c.patches_per_pixel);
-    out.x[k] = x;
-    out.y[k] = y;
-    out.z[k] = z;
-    out.patch[k] = inside ? patch : c.outside;
-    out.around[k] =
-        static_cast<std::int32_t>(vv * c.around_per_pixel) * c.around_width + static_cast<std::int32_t>(uu * c.around_per_pixel);
+// `start`: centre of the part's first voxel; steps of one voxel along the axes of the world.
+void project(const Projection& c, const Eigen::Vector3f& start, const Eigen::Matrix3f& step, Part& out) {
+  for (int layer = 0; layer < 4; ++layer) {
+    const Eigen::Vector3f s = start + step.col(2) * static_cast<float>(layer);
+    const float sx = s.x(), sy = s.y(), sz = s.z();
+    const float ax = step(0, 0), ay = step(1, 0), az = step(2, 0);
+    const float bx = step(0, 1), by = step(1, 1), bz = step(2, 1);
+    for (int i = 0; i < 16; ++i) {
+      const auto k = static_cast<std::size_t>(16 * layer + i);
+      const auto column = static_cast<float>(i & 3), row = static_cast<float>(i >> 2);
+      const float x = sx + ax * column + bx * row, y = sy + ay * column + by * row, z = sz + az * column + bz * row;
+      const bool before = (z > c.nearest) & (z <= c.farthest);
+      const float inverse = 1.0f / (before ? z : 1.0f);
+      // From the picture's left upper corner, so that cutting off rounds down.
+      const float u = c.fx * x * inverse + c.cx + 0.5f, v = c.fy * y * inverse + c.cy + 0.5f;
+      const bool inside = before & (u >= 0.0f) & (v >= 0.0f) & (u < c.right) & (v < c.bottom);
+      const float uu = inside ? u : 0.0f, vv = inside ? v : 0.0f;
+      const auto patch =
+          static_cast<std::int32_t>(vv * c.patches_per_pixel) * c.patch_width + static_cast<std::int32_t>(uu * c.patches_per_pixel);
+      out.x[k] = x;
+      out.y[k] = y;
+      out.z[k] = z;
+      out.patch[k] = inside ? patch : c.outside;
+      out.around[k] =
+          static_cast<std::int32_t>(vv * c.around_per_pixel) * c.around_width + static_cast<std::int32_t>(uu * c.around_per_pixel);
+    }
   }
 }
 
@@ -83,8 +104,6 @@ class Projecting {
     per_voxel_ = (X_CW_.linear() * config.voxel_m).cast<float>();
     memory_ = config.projection.memory_frames;
     forget_after_ = config.clear_frames;
-    block_radius_ = static_cast<float>(4.0 * config.voxel_m * std::sqrt(3.0));
-    // How fast a point that goes on by one voxel to every side can leave the image of the block's middle.
     projection_ = {static_cast<float>(intrinsics.fx),
                    static_cast<float>(intrinsics.fy),
                    static_cast<float>(intrinsics.cx),
@@ -102,33 +121,13 @@ class Projecting {
 
   // Blocks of one column that the frame says something about.
   void find(const Eigen::Vector3i& first, int count, std::vector<Candidate>& found) const {
-    const double side = 8.0 * config_.voxel_m;
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3i index = first + Eigen::Vector3i(0, 0, i);
-      const Eigen::Vector3f centre = (X_CW_ * ((index.cast<double>().array() + 0.5) * side).matrix()).cast<float>();
-      const float near = centre.z() - block_radius_, far = centre.z() + block_radius_;
-      if (far <= 0.0f || near > max_depth_ + truncation_) continue;
-      if (near <= block_radius_) {
-        found.push_back({index, Seen::mixed});
-        continue;
-      }
-      // Off the axis a sphere's image reaches farther than focal * radius / near by the tangent's share.
-      const float slope = std::max(std::abs(centre.x()), std::abs(centre.y())) / centre.z();
-      const float reach = focal_ * block_radius_ * (1.0f + slope) / near;
-      const float u = projection_.fx * centre.x() / centre.z() + projection_.cx;
-      const float v = projection_.fy * centre.y() / centre.z() + projection_.cy;
-      if (u + reach < -0.5f || v + reach < -0.5f || u - reach > projection_.right - 0.5f || v - reach > projection_.bottom - 0.5f) continue;
-      const DepthPyramid::Range range = pyramid_.range(u, v, reach);
-      // Behind all that is seen here.
-      if (range.largest + along_ < near) continue;
-      const bool inside =
-          u - reach >= 0.0f && v - reach >= 0.0f && u + reach <= projection_.right - 1.0f && v + reach <= projection_.bottom - 1.0f;
-      // All before it, so far that no plane comes near either.
-      if (inside && range.smallest > far + along_ && far <= max_depth_) {
-        if (config_.carve) found.push_back({index, Seen::free});
-        continue;
-      }
-      found.push_back({index, Seen::mixed});
+      const Eigen::Vector3f corner = corner_of(index);
+      Extent extent;
+      for (int k = 0; k < 8; ++k) add_corner(corner, 8 * (k & 1), 8 * (k >> 1 & 1), 8 * (k >> 2), extent);
+      const Seen seen = judge(extent);
+      if (seen != Seen::nothing) found.push_back({index, seen});
     }
   }
 
@@ -140,45 +139,90 @@ class Projecting {
       for (std::size_t i = 0; i < 512; ++i) see_through(i, surface, free_frames);
       return true;
     }
-    const double side = 8.0 * config_.voxel_m;
-    const Eigen::Vector3f centre = (X_CW_ * ((candidate.index.cast<double>().array() + 0.5) * side).matrix()).cast<float>();
-    // A voxel's image is at most this large anywhere in the block.
-    const float near = std::max(centre.z() - block_radius_, voxel_);
-    const float slope = (std::max(std::abs(centre.x()), std::abs(centre.y())) + block_radius_) / near;
-    const float footprint = focal_ * 0.5f * voxel_ * (1.0f + slope) / std::max(near - 0.5f * voxel_, 0.5f * voxel_);
-    const DepthPyramid::Surroundings around = pyramid_.surroundings(footprint);
-    Projection projection = projection_;
-    projection.around_per_pixel = around.per_pixel;
-    projection.around_width = around.width;
+    const Eigen::Vector3f corner = corner_of(candidate.index);
     bool changed = false;
-    Layer layer;
-    for (int z = 0; z < 8; ++z) {
-      const Eigen::Vector3f start = centre + per_voxel_ * Eigen::Vector3f(-3.5f, -3.5f, static_cast<float>(z) - 3.5f);
-      project(projection, start, per_voxel_.col(0), per_voxel_.col(1), layer);
-      for (std::size_t i = 0; i < kSlice; ++i) {
-        const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(layer.patch[i])];
-        const float ahead = patch.nx * layer.x[i] + patch.ny * layer.y[i] + patch.nz * layer.z[i];
-        const float distance = patch.h - ahead;
-        const std::size_t voxel = static_cast<std::size_t>(z) * kSlice + i;
-        // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
-        if ((patch.weight > 0.0f) & (distance >= -behind_) & (distance <= truncation_) &
-            (layer.z[i] * std::abs(distance) <= along_ * ahead)) {
-          if (!surface) {
-            fresh = std::make_unique<SurfaceVoxels>();
-            surface = fresh.get();
-          }
-          changed |= average(voxel, distance, patch, *surface, free_frames);
-        } else if (config_.carve && layer.patch[i] != projection.outside && layer.z[i] <= max_depth_ &&
-                   around.smallest[layer.around[i]] > layer.z[i] + truncation_) {
-          see_through(voxel, surface, free_frames);
-          changed = true;
-        }
+    for (int part = 0; part < 8; ++part) {
+      const int x = 4 * (part & 1), y = 4 * (part >> 1 & 1), z = 4 * (part >> 2);
+      Extent extent;
+      for (int k = 0; k < 8; ++k) add_corner(corner, x + 4 * (k & 1), y + 4 * (k >> 1 & 1), z + 4 * (k >> 2), extent);
+      const Seen seen = judge(extent);
+      if (seen == Seen::free) {
+        for (std::size_t i = 0; i < kPart; ++i) see_through(voxel_of(x, y, z, i), surface, free_frames);
+        changed = true;
+      } else if (seen == Seen::mixed) {
+        changed |= update_part(corner, x, y, z, extent.near, surface, free_frames, fresh);
+        if (fresh) surface = fresh.get();
       }
     }
     return changed;
   }
 
  private:
+  // Lowest corner of a block in the camera's frame.
+  Eigen::Vector3f corner_of(const Eigen::Vector3i& index) const {
+    return (X_CW_ * (index.cast<double>() * (8.0 * config_.voxel_m))).cast<float>();
+  }
+
+  // A point (x, y, z) voxels from the corner.
+  void add_corner(const Eigen::Vector3f& corner, int x, int y, int z, Extent& extent) const {
+    const Eigen::Vector3f p = corner + per_voxel_.col(0) * static_cast<float>(x) + per_voxel_.col(1) * static_cast<float>(y) +
+                              per_voxel_.col(2) * static_cast<float>(z);
+    const float inverse = 1.0f / std::max(p.z(), projection_.nearest);
+    extent.add(projection_.fx * p.x() * inverse + projection_.cx, projection_.fy * p.y() * inverse + projection_.cy, p.z());
+  }
+
+  Seen judge(const Extent& e) const {
+    if (e.far <= projection_.nearest || e.near > projection_.farthest) return Seen::nothing;
+    if (e.near <= projection_.nearest) return Seen::mixed;
+    if (e.u1 < -0.5f || e.v1 < -0.5f || e.u0 > projection_.right - 0.5f || e.v0 > projection_.bottom - 0.5f) return Seen::nothing;
+    const DepthPyramid::Range range = pyramid_.range(e.u0, e.v0, e.u1, e.v1);
+    // Behind all that is seen here.
+    if (range.largest + along_ < e.near) return Seen::nothing;
+    const bool inside = e.u0 >= 0.0f && e.v0 >= 0.0f && e.u1 <= projection_.right - 1.0f && e.v1 <= projection_.bottom - 1.0f;
+    // All before it, so far that no plane comes near either: planes lie within their pixels' depths, but for a little.
+    if (inside && range.smallest > e.far + along_ + voxel_ && e.far <= max_depth_) return config_.carve ? Seen::free : Seen::nothing;
+    return Seen::mixed;
+  }
+
+  static std::size_t voxel_of(int x, int y, int z, std::size_t i) {
+    const auto k = static_cast<int>(i);
+    return static_cast<std::size_t>(TsdfVolume::offset(x + (k & 3), y + (k >> 2 & 3), z + (k >> 4)));
+  }
+
+  bool update_part(const Eigen::Vector3f& corner, int x, int y, int z, float nearest, SurfaceVoxels* surface,
+                   std::array<std::uint8_t, 512>& free_frames, std::unique_ptr<SurfaceVoxels>& fresh) const {
+    const Eigen::Vector3f start = corner + per_voxel_ * (Eigen::Vector3i(x, y, z).cast<float>().array() + 0.5f).matrix();
+    // A voxel's image reaches no farther than this anywhere in the part; off the axis by the tangent's share more.
+    const float near = std::max(nearest, voxel_);
+    const float slope = (std::max(std::abs(start.x()), std::abs(start.y())) + 7.0f * voxel_) / near;
+    const float footprint = focal_ * 0.5f * voxel_ * (1.0f + slope) / near;
+    const DepthPyramid::Surroundings around = pyramid_.surroundings(footprint);
+    Projection projection = projection_;
+    projection.around_per_pixel = around.per_pixel;
+    projection.around_width = around.width;
+    Part part;
+    project(projection, start, per_voxel_, part);
+    bool changed = false;
+    for (std::size_t i = 0; i < kPart; ++i) {
+      const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(part.patch[i])];
+      const float ahead = patch.nx * part.x[i] + patch.ny * part.y[i] + patch.nz * part.z[i];
+      const float distance = patch.h - ahead;
+      // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
+      if ((patch.weight > 0.0f) & (distance >= -behind_) & (distance <= truncation_) & (part.z[i] * std::abs(distance) <= along_ * ahead)) {
+        if (!surface) {
+          fresh = std::make_unique<SurfaceVoxels>();
+          surface = fresh.get();
+        }
+        changed |= average(voxel_of(x, y, z, i), distance, patch, *surface, free_frames);
+      } else if (config_.carve && part.patch[i] != projection.outside && part.z[i] <= max_depth_ &&
+                 around.smallest[part.around[i]] > part.z[i] + truncation_) {
+        see_through(voxel_of(x, y, z, i), surface, free_frames);
+        changed = true;
+      }
+    }
+    return changed;
+  }
+
   bool average(std::size_t i, float distance, const SurfacePatch& patch, SurfaceVoxels& surface,
                std::array<std::uint8_t, 512>& free_frames) const {
     float weight = patch.weight;
@@ -223,7 +267,7 @@ class Projecting {
   Projection projection_{};
   Eigen::Matrix3f per_voxel_;  // step of one voxel along each axis of the world, in the camera's frame
   float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f, max_depth_ = 0.0f;
-  float focal_ = 0.0f, block_radius_ = 0.0f;
+  float focal_ = 0.0f;
   int memory_ = 0, forget_after_ = 0;
 };
 

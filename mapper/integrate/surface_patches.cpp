@@ -19,6 +19,69 @@ constexpr std::size_t kRowsPerPiece = 6;
 // One pixel strays about as far as the mean of its patch times this.
 constexpr float kPixelNoise = 3.0f;
 
+// Rows of patches as arrays of one quantity each, with an empty patch at either end, so that loops over a row need no cases.
+struct Means {
+  // Of one row: inverse depth (1/m; 0: too few pixels), mean pixel, largest less smallest depth (metres), share of the pixels that count.
+  std::vector<float> w, u, v, spread, share;
+  // Slopes of inverse depth along u and v, 1/m per pixel; known: 1, else 0.
+  std::vector<float> slope_u, slope_v, known;
+
+  void resize(std::size_t count) {
+    for (auto* column : {&w, &u, &v, &spread, &share, &slope_u, &slope_v, &known}) column->assign(count, 0.0f);
+  }
+};
+
+// Sums down the rows of a patch, per column of pixels.
+struct Columns {
+  explicit Columns(std::size_t width) : count(width), w(width), v(width), nearest(width, kFar), farthest(width) {}
+  std::vector<float> count, w, v, nearest, farthest;
+};
+
+// `rows` lines of depth from row `first` on.
+template <int kRows>
+void sum_columns(const float* line, std::size_t stride, int rows, int width, float first, float far, Columns& c) {
+  const int count = kRows > 0 ? kRows : rows;
+  float *const counts = c.count.data(), *const ws = c.w.data(), *const vs = c.v.data();
+  float *const nearest = c.nearest.data(), *const farthest = c.farthest.data();
+  for (int u = 0; u < width; ++u) {
+    float n = 0.0f, w = 0.0f, v = 0.0f, low = kFar, high = 0.0f;
+    for (int r = 0; r < count; ++r) {
+      const float z = line[static_cast<std::size_t>(r) * stride + static_cast<std::size_t>(u)];
+      const bool ok = (z > 0.0f) & (z <= far);
+      const float inverse = 1.0f / (ok ? z : 1.0f);
+      n += ok ? 1.0f : 0.0f;
+      w += ok ? inverse : 0.0f;
+      v += ok ? first + static_cast<float>(r) : 0.0f;
+      const float near_z = ok ? z : kFar, far_z = ok ? z : 0.0f;
+      low = near_z < low ? near_z : low;
+      high = far_z > high ? far_z : high;
+    }
+    counts[u] = n;
+    ws[u] = w;
+    vs[u] = v;
+    nearest[u] = low;
+    farthest[u] = high;
+  }
+}
+
+// Slopes from the two sides of each patch of a row: between both where they agree, of the flatter one where not. `place` is u or v.
+struct Side {
+  const float *w, *place;
+};
+void slopes_between(const Side& low, const Side& here, const Side& high, float per_patch, int width, float* slope, float* known) {
+  for (int x = 0; x < width; ++x) {
+    const bool has_low = low.w[x] > 0.0f, has_high = high.w[x] > 0.0f;
+    const float below = (here.w[x] - low.w[x]) / (has_low ? here.place[x] - low.place[x] : 1.0f);
+    const float above = (high.w[x] - here.w[x]) / (has_high ? high.place[x] - here.place[x] : 1.0f);
+    const float across = (high.w[x] - low.w[x]) / (has_low & has_high ? high.place[x] - low.place[x] : 1.0f);
+    const float flatter = std::abs(below) < std::abs(above) ? below : above;
+    const float both = std::abs(below - above) <= here.w[x] * per_patch ? across : flatter;
+    const float one = has_low ? below : above;
+    slope[x] = has_low & has_high ? both : one;
+    known[x] = (has_low | has_high) & (here.w[x] > 0.0f) ? known[x] : 0.0f;
+  }
+}
+
 class Patching {
  public:
   Patching(const RgbdFrame& frame, const Intrinsics& intrinsics, const std::vector<std::int32_t>& labels, const TsdfConfig& config)
@@ -26,121 +89,86 @@ class Patching {
     side_ = chosen_patch_px(config, intrinsics);
     width_ = (intrinsics.width + side_ - 1) / side_;
     height_ = (intrinsics.height + side_ - 1) / side_;
-    const std::size_t count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    means_.resize(count);
-    slopes_.resize(count);
+    stride_ = static_cast<std::size_t>(width_) + 2;
+    means_.resize(stride_ * (static_cast<std::size_t>(height_) + 2));
     result_.patch_px = side_;
     result_.width = width_;
     result_.height = height_;
-    result_.patches.resize(count + 1);
+    result_.patches.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
     max_depth_ = static_cast<float>(config.max_depth_m);
     noise_ = static_cast<float>(config.projection.depth_noise_share);
     const double steepest = to_radians(config.projection.max_incidence_deg);
     // Largest change of depth from pixel to pixel, as a share of depth.
     steep_share_ = static_cast<float>(std::tan(steepest) / std::min(intrinsics.fx, intrinsics.fy));
     least_cosine_ = static_cast<float>(std::cos(steepest));
-    least_count_ = std::max(1, side_ * side_ / 4);
+    least_count_ = static_cast<float>(std::max(1, side_ * side_ / 4));
     reject_edges_ = config.projection.reject_edges;
   }
 
   PatchImage run() {
     const auto rows = static_cast<std::size_t>(height_);
-    const auto each_row = [&](auto&& body) {
-      parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
-      });
-    };
     parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
       Columns columns(static_cast<std::size_t>(width_ * side_));
       for (std::size_t y = begin; y < end; ++y) average_row(static_cast<int>(y), columns);
     });
-    each_row([&](int y) { slope_row(y); });
-    each_row([&](int y) { plane_row(y); });
+    parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t y = begin; y < end; ++y) slope_row(static_cast<int>(y));
+    });
+    parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
+      Planes planes(static_cast<std::size_t>(width_));
+      for (std::size_t y = begin; y < end; ++y) plane_row(static_cast<int>(y), planes);
+    });
     return std::move(result_);
   }
 
  private:
-  // Of one patch's pixels.
-  struct Mean {
-    float w = 0.0f;            // inverse depth, 1/m; 0: too few pixels
-    float u = 0.0f, v = 0.0f;  // mean pixel
-    float spread = 0.0f;       // largest less smallest depth, metres
-    float share = 0.0f;        // of the patch's pixels that count
-  };
-  struct Slope {
-    float u = 0.0f, v = 0.0f;  // of inverse depth, 1/m per pixel
-    bool known = false;
-  };
-  // Sums down the rows of a patch, per column of pixels.
-  struct Columns {
-    explicit Columns(std::size_t width) : count(width), w(width), v(width), nearest(width), farthest(width) {}
-    std::vector<float> count, w, v, nearest, farthest;
-  };
-
-  std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
+  // Into the padded arrays; x and y from -1.
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y + 1) * stride_ + static_cast<std::size_t>(x + 1); }
   bool valid(float z) const { return (z > 0.0f) & (z <= max_depth_); }
 
-  void sum_columns(int y, Columns& c) const {
-    std::fill(c.count.begin(), c.count.end(), 0.0f);
-    std::fill(c.w.begin(), c.w.end(), 0.0f);
-    std::fill(c.v.begin(), c.v.end(), 0.0f);
-    std::fill(c.nearest.begin(), c.nearest.end(), kFar);
-    std::fill(c.farthest.begin(), c.farthest.end(), 0.0f);
-    const int v1 = std::min(intrinsics_.height, side_ * (y + 1));
-    const float far = max_depth_;
-    for (int v = side_ * y; v < v1; ++v) {
-      const float* const line = frame_.depth.ptr<float>(v);
-      const auto row = static_cast<float>(v);
-      float *const count = c.count.data(), *const w = c.w.data(), *const vs = c.v.data();
-      float *const nearest = c.nearest.data(), *const farthest = c.farthest.data();
-      for (int u = 0; u < intrinsics_.width; ++u) {
-        const float z = line[u];
-        const bool ok = (z > 0.0f) & (z <= far);
-        const float one = ok ? 1.0f : 0.0f;
-        const float inverse = 1.0f / (ok ? z : 1.0f);
-        count[u] += one;
-        w[u] += ok ? inverse : 0.0f;
-        vs[u] += ok ? row : 0.0f;
-        const float low = ok ? z : kFar, high = ok ? z : 0.0f;
-        nearest[u] = low < nearest[u] ? low : nearest[u];
-        farthest[u] = high > farthest[u] ? high : farthest[u];
-      }
-    }
-  }
-
   void average_row(int y, Columns& c) {
-    sum_columns(y, c);
+    const int rows = std::min(side_, intrinsics_.height - side_ * y), width = intrinsics_.width;
+    const float* const line = frame_.depth.ptr<float>(side_ * y);
+    const std::size_t stride = frame_.depth.step1();
+    const auto first = static_cast<float>(side_ * y);
+    if (rows == 4) {
+      sum_columns<4>(line, stride, rows, width, first, max_depth_, c);
+    } else {
+      sum_columns<0>(line, stride, rows, width, first, max_depth_, c);
+    }
+    const float full = 1.0f / static_cast<float>(side_ * side_);
+    SurfacePatch* const patches = result_.patches.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
     for (int x = 0; x < width_; ++x) {
       float count = 0.0f, w = 0.0f, u_sum = 0.0f, v_sum = 0.0f, nearest = kFar, farthest = 0.0f;
       for (int i = 0; i < side_; ++i) {
         const auto u = static_cast<std::size_t>(x * side_ + i);
         count += c.count[u];
         w += c.w[u];
-        u_sum += c.count[u] * static_cast<float>(u);
+        u_sum += c.count[u] * static_cast<float>(i);
         v_sum += c.v[u];
         nearest = std::min(nearest, c.nearest[u]);
         farthest = std::max(farthest, c.farthest[u]);
       }
-      SurfacePatch& patch = result_.patches[at(x, y)];
-      Mean& mean = means_[at(x, y)];
-      if (count < static_cast<float>(least_count_)) continue;
+      if (count < least_count_) continue;
+      const std::size_t i = at(x, y);
       const float tolerance = farthest * (steep_share_ * static_cast<float>(side_) + kPixelNoise * noise_);
-      const bool mixed = farthest - nearest > tolerance;
       float from = 0.0f, to = kFar;
+      const bool mixed = farthest - nearest > tolerance;
       if (mixed) {
         const float middle = 0.5f * (nearest + farthest);
-        take_larger_part(x, y, middle, mean);
-        if (mean.w <= 0.0f) continue;
-        from = 1.0f / mean.w < middle ? 0.0f : middle;
-        to = 1.0f / mean.w < middle ? middle : kFar;
+        if (!take_larger_part(x, y, middle, i)) continue;
+        (1.0f / means_.w[i] < middle ? to : from) = middle;
       } else {
         const float scale = 1.0f / count;
-        mean = {w * scale, u_sum * scale, v_sum * scale, farthest - nearest, count / static_cast<float>(side_ * side_)};
+        means_.w[i] = w * scale;
+        means_.u[i] = static_cast<float>(x * side_) + u_sum * scale;
+        means_.v[i] = v_sum * scale;
+        means_.spread[i] = farthest - nearest;
+        means_.share[i] = count * full;
       }
-      paint(x, y, mixed, from, to, patch);
-      patch.label = labels_.empty() ? 0 : label_of(x, y, from, to);
+      means_.known[i] = 1.0f;
+      paint(x, y, mixed, from, to, patches[x]);
+      if (!labels_.empty()) patches[x].label = label_of(x, y, from, to);
     }
   }
 
@@ -156,7 +184,7 @@ class Patching {
   }
 
   // Pixels nearer or farther than `middle`, whichever are more; of equally many the nearer ones.
-  void take_larger_part(int x, int y, float middle, Mean& mean) const {
+  bool take_larger_part(int x, int y, float middle, std::size_t i) {
     struct Part {
       float count = 0.0f, w = 0.0f, u = 0.0f, v = 0.0f, nearest = kFar, farthest = 0.0f;
     };
@@ -171,9 +199,14 @@ class Patching {
       p.farthest = std::max(p.farthest, z);
     });
     const Part& p = parts[parts[0].count >= parts[1].count ? 0 : 1];
-    if (p.count < static_cast<float>(least_count_)) return;
+    if (p.count < least_count_) return false;
     const float scale = 1.0f / p.count;
-    mean = {p.w * scale, p.u * scale, p.v * scale, p.farthest - p.nearest, p.count / static_cast<float>(side_ * side_)};
+    means_.w[i] = p.w * scale;
+    means_.u[i] = p.u * scale;
+    means_.v[i] = p.v * scale;
+    means_.spread[i] = p.farthest - p.nearest;
+    means_.share[i] = p.count / static_cast<float>(side_ * side_);
+    return true;
   }
 
   void paint(int x, int y, bool mixed, float from, float to, SurfacePatch& patch) const {
@@ -230,76 +263,72 @@ class Patching {
     return best;
   }
 
-  // From the two sides of a patch. `disagreement`: how far the sides' slopes may lie apart on one plane.
-  static float slope_between(const Mean& low, const Mean& here, const Mean& high, float Mean::*place, float disagreement, bool& known) {
-    const bool has_low = low.w > 0.0f, has_high = high.w > 0.0f;
-    known = has_low || has_high;
-    if (!known) return 0.0f;
-    const float below = has_low ? (here.w - low.w) / (here.*place - low.*place) : 0.0f;
-    const float above = has_high ? (high.w - here.w) / (high.*place - here.*place) : 0.0f;
-    if (!has_low) return above;
-    if (!has_high) return below;
-    if (std::abs(below - above) <= disagreement) return (high.w - low.w) / (high.*place - low.*place);
-    return std::abs(below) < std::abs(above) ? below : above;
-  }
-
-  const Mean& mean_at(int x, int y) const {
-    static constexpr Mean kNothing{};
-    return x >= 0 && y >= 0 && x < width_ && y < height_ ? means_[at(x, y)] : kNothing;
-  }
-
   void slope_row(int y) {
     const float per_patch = noise_ / static_cast<float>(side_);
-    for (int x = 0; x < width_; ++x) {
-      const Mean& here = means_[at(x, y)];
-      if (here.w <= 0.0f) continue;
-      const float disagreement = here.w * per_patch;
-      bool along_u = false, along_v = false;
-      Slope& slope = slopes_[at(x, y)];
-      slope.u = slope_between(mean_at(x - 1, y), here, mean_at(x + 1, y), &Mean::u, disagreement, along_u);
-      slope.v = slope_between(mean_at(x, y - 1), here, mean_at(x, y + 1), &Mean::v, disagreement, along_v);
-      slope.known = along_u && along_v;
+    const std::size_t i = at(0, y);
+    const auto row = [&](std::size_t place, const std::vector<float>& pixel) {
+      return Side{means_.w.data() + place, pixel.data() + place};
+    };
+    float* const known = means_.known.data() + i;
+    slopes_between(row(i - 1, means_.u), row(i, means_.u), row(i + 1, means_.u), per_patch, width_, means_.slope_u.data() + i, known);
+    slopes_between(row(i - stride_, means_.v), row(i, means_.v), row(i + stride_, means_.v), per_patch, width_, means_.slope_v.data() + i,
+                   known);
+  }
+
+  // Slopes of a row, averaged over the neighbours on the same plane, and how many these are.
+  struct Planes {
+    explicit Planes(std::size_t width) : u(width), v(width), friends(width) {}
+    std::vector<float> u, v, friends;
+  };
+
+  void average_slopes(int y, Planes& out) const {
+    const std::size_t i = at(0, y);
+    const float *const w = means_.w.data() + i, *const u = means_.u.data() + i, *const v = means_.v.data() + i;
+    const float *const su = means_.slope_u.data() + i, *const sv = means_.slope_v.data() + i;
+    float *const sum_u = out.u.data(), *const sum_v = out.v.data(), *const friends = out.friends.data();
+    std::copy_n(su, width_, sum_u);
+    std::copy_n(sv, width_, sum_v);
+    std::fill(out.friends.begin(), out.friends.end(), 0.0f);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        const std::size_t j = at(dx, y + dy);
+        const float *const ow = means_.w.data() + j, *const ou = means_.u.data() + j, *const ov = means_.v.data() + j;
+        const float *const osu = means_.slope_u.data() + j, *const osv = means_.slope_v.data() + j, *const known = means_.known.data() + j;
+        for (int x = 0; x < width_; ++x) {
+          const float expected = w[x] + su[x] * (ou[x] - u[x]) + sv[x] * (ov[x] - v[x]);
+          const bool same = (known[x] > 0.0f) & (std::abs(ow[x] - expected) <= noise_ * w[x]);
+          sum_u[x] += same ? osu[x] : 0.0f;
+          sum_v[x] += same ? osv[x] : 0.0f;
+          friends[x] += same ? 1.0f : 0.0f;
+        }
+      }
     }
   }
 
-  void plane_row(int y) {
+  void plane_row(int y, Planes& planes) {
+    average_slopes(y, planes);
     const auto fx = static_cast<float>(intrinsics_.fx), fy = static_cast<float>(intrinsics_.fy);
     const auto cx = static_cast<float>(intrinsics_.cx), cy = static_cast<float>(intrinsics_.cy);
+    SurfacePatch* const patches = result_.patches.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
     for (int x = 0; x < width_; ++x) {
-      const Mean& here = means_[at(x, y)];
-      if (here.w <= 0.0f) continue;
-      const Slope& own = slopes_[at(x, y)];
-      if (!own.known) continue;
-      float su = own.u, sv = own.v;
-      int friends = 0;
-      for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j) {
-        for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i) {
-          const Mean& other = means_[at(i, j)];
-          const Slope& slope = slopes_[at(i, j)];
-          if ((i == x && j == y) || other.w <= 0.0f || !slope.known) continue;
-          const float expected = here.w + own.u * (other.u - here.u) + own.v * (other.v - here.v);
-          if (std::abs(other.w - expected) > noise_ * here.w) continue;
-          su += slope.u;
-          sv += slope.v;
-          ++friends;
-        }
-      }
-      const float scale = 1.0f / static_cast<float>(friends + 1);
-      su *= scale;
-      sv *= scale;
-      const float depth = 1.0f / here.w;
+      const std::size_t i = at(x, y);
+      if (means_.known[i] <= 0.0f) continue;
+      const auto k = static_cast<std::size_t>(x);
+      const float w = means_.w[i], depth = 1.0f / w, scale = 1.0f / (planes.friends[k] + 1.0f);
+      const float su = planes.u[k] * scale, sv = planes.v[k] * scale;
       if (reject_edges_) {
         const float sloped = (std::abs(su) + std::abs(sv)) * static_cast<float>(side_) * depth * depth;
-        if (friends < 2 || here.spread > sloped + kPixelNoise * noise_ * depth) continue;
+        if (planes.friends[k] < 2.0f || means_.spread[i] > sloped + kPixelNoise * noise_ * depth) continue;
       }
-      const float qx = su * fx, qy = sv * fy, qz = here.w + su * (cx - here.u) + sv * (cy - here.v);
+      const float qx = su * fx, qy = sv * fy, qz = w + su * (cx - means_.u[i]) + sv * (cy - means_.v[i]);
       const float h = 1.0f / std::sqrt(qx * qx + qy * qy + qz * qz);
-      const float rx = (here.u - cx) / fx, ry = (here.v - cy) / fy;
-      const float cosine = h * here.w / std::sqrt(rx * rx + ry * ry + 1.0f);
+      const float rx = (means_.u[i] - cx) / fx, ry = (means_.v[i] - cy) / fy;
+      const float cosine = h * w / std::sqrt(rx * rx + ry * ry + 1.0f);
       if (!(cosine >= least_cosine_)) continue;
-      SurfacePatch& patch = result_.patches[at(x, y)];
+      SurfacePatch& patch = patches[x];
       patch.depth = depth;
-      patch.weight = here.share * (config_.inverse_square_weight ? here.w * here.w : 1.0f);
+      patch.weight = means_.share[i] * (config_.inverse_square_weight ? w * w : 1.0f);
       if (config_.projection.incidence_weight) patch.weight *= cosine;
       if (config_.projection.plane_distance) {
         patch.nx = qx * h;
@@ -317,11 +346,11 @@ class Patching {
   const Intrinsics& intrinsics_;
   const std::vector<std::int32_t>& labels_;
   const TsdfConfig& config_;
-  int side_ = 0, width_ = 0, height_ = 0, least_count_ = 1;
-  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_cosine_ = 0.0f;
+  int side_ = 0, width_ = 0, height_ = 0;
+  std::size_t stride_ = 0;
+  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_cosine_ = 0.0f, least_count_ = 1.0f;
   bool reject_edges_ = true;
-  std::vector<Mean> means_;
-  std::vector<Slope> slopes_;
+  Means means_;
   PatchImage result_;
 };
 
