@@ -15,6 +15,7 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     // An object that comes back into view is the one that was there before, and its box is where its cuboid now appears.
     config.associate.iou2d_mode = "projected";
     config.associate.max_frame_gap = 0;
+    config.integrate.method = "projection";
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper or best");

@@ -47,12 +47,12 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   return std::make_unique<NoDetector>();
 }
 
+}  // namespace
+
 std::unique_ptr<Integrator> make_integrator(const TsdfConfig& config) {
   if (config.method == "projection") return std::make_unique<ProjectiveIntegrator>(config);
   return std::make_unique<GroupedRayIntegrator>(config);
 }
-
-}  // namespace
 
 Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
   Stages stages;

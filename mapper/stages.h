@@ -29,4 +29,7 @@ std::string chosen_poses(const MapperConfig& config, const StreamInfo& info);
 // without scans).
 Stages make_stages(const MapperConfig& config, const StreamInfo& info);
 
+// The integrator that config.method names.
+std::unique_ptr<Integrator> make_integrator(const TsdfConfig& config);
+
 }  // namespace waretwin
