@@ -16,6 +16,7 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     config.associate.iou2d_mode = "projected";
     config.associate.max_frame_gap = 0;
     config.integrate.method = "projection";
+    config.integrate.mesh_min_weight = 0.02;  // one frame from 5 m, head on
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper or best");

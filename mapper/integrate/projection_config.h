@@ -7,19 +7,19 @@ namespace waretwin {
 
 struct ProjectionConfig {
   int patch_px = 0;
-  double max_incidence_deg = 80.0;
+  double max_incidence_deg = 85.0;
   double depth_noise_share = 0.01;
   bool plane_distance = true;
   bool reject_edges = true;
   bool incidence_weight = true;
-  double behind_voxels = 4.0;
+  double behind_voxels = 2.0;
   double along_truncations = 2.0;
   bool forget = true;
   int memory_frames = 15;
 
   void visit(Fields& f) {
     f("patch_px", patch_px,
-      "depth is gathered into patches of so many pixels squared (1, 2, 4, 8); 0: as many as are at most half a voxel at 1.5 m",
+      "depth is gathered into patches of so many pixels squared; 0: as many (1, 2, 4 or 8) as are at most half a voxel at 1.5 m",
       {.min = 0, .max = 8});
     f("max_incidence_deg", max_incidence_deg, "patches seen flatter than this from their normal make no surface", {.min = 10, .max = 89});
     f("depth_noise_share", depth_noise_share,

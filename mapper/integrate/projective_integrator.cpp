@@ -60,32 +60,41 @@ struct Projection {
   std::int32_t outside;
 };
 
+constexpr float when(bool condition) { return condition ? 1.0f : 0.0f; }
+
+// 16 voxels of one layer, without branches, so that compilers take several at once. `s`: the first one's centre; `a`, `b`: steps along x
+// and y.
+void project_layer(const Projection& projection, const Eigen::Vector3f& s, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                   float* __restrict xs, float* __restrict ys, float* __restrict zs, std::int32_t* __restrict patches,
+                   std::int32_t* __restrict around) {
+  static constexpr float kColumn[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  static constexpr float kRow[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+  const Projection c = projection;
+  const float sx = s.x(), sy = s.y(), sz = s.z(), ax = a.x(), ay = a.y(), az = a.z(), bx = b.x(), by = b.y(), bz = b.z();
+  for (int k = 0; k < 16; ++k) {
+    const float x = sx + ax * kColumn[k] + bx * kRow[k], y = sy + ay * kColumn[k] + by * kRow[k], z = sz + az * kColumn[k] + bz * kRow[k];
+    const float before = when(z > c.nearest) * when(z <= c.farthest);
+    const float inverse = 1.0f / (before > 0.0f ? z : 1.0f);
+    // From the picture's left upper corner, so that cutting off rounds down.
+    const float u = c.fx * x * inverse + c.cx + 0.5f, v = c.fy * y * inverse + c.cy + 0.5f;
+    const float inside = before * when(u >= 0.0f) * when(v >= 0.0f) * when(u < c.right) * when(v < c.bottom);
+    const float uu = inside > 0.0f ? u : 0.0f, vv = inside > 0.0f ? v : 0.0f;
+    const int patch =
+        static_cast<std::int32_t>(vv * c.patches_per_pixel) * c.patch_width + static_cast<std::int32_t>(uu * c.patches_per_pixel);
+    xs[k] = x;
+    ys[k] = y;
+    zs[k] = z;
+    patches[k] = inside > 0.0f ? patch : c.outside;
+    around[k] = static_cast<std::int32_t>(vv * c.around_per_pixel) * c.around_width + static_cast<std::int32_t>(uu * c.around_per_pixel);
+  }
+}
+
 // `start`: centre of the part's first voxel; steps of one voxel along the axes of the world.
-void project(const Projection& c, const Eigen::Vector3f& start, const Eigen::Matrix3f& step, Part& out) {
+void project(const Projection& projection, const Eigen::Vector3f& start, const Eigen::Matrix3f& step, Part& out) {
   for (int layer = 0; layer < 4; ++layer) {
-    const Eigen::Vector3f s = start + step.col(2) * static_cast<float>(layer);
-    const float sx = s.x(), sy = s.y(), sz = s.z();
-    const float ax = step(0, 0), ay = step(1, 0), az = step(2, 0);
-    const float bx = step(0, 1), by = step(1, 1), bz = step(2, 1);
-    for (int i = 0; i < 16; ++i) {
-      const auto k = static_cast<std::size_t>(16 * layer + i);
-      const auto column = static_cast<float>(i & 3), row = static_cast<float>(i >> 2);
-      const float x = sx + ax * column + bx * row, y = sy + ay * column + by * row, z = sz + az * column + bz * row;
-      const bool before = (z > c.nearest) & (z <= c.farthest);
-      const float inverse = 1.0f / (before ? z : 1.0f);
-      // From the picture's left upper corner, so that cutting off rounds down.
-      const float u = c.fx * x * inverse + c.cx + 0.5f, v = c.fy * y * inverse + c.cy + 0.5f;
-      const bool inside = before & (u >= 0.0f) & (v >= 0.0f) & (u < c.right) & (v < c.bottom);
-      const float uu = inside ? u : 0.0f, vv = inside ? v : 0.0f;
-      const auto patch =
-          static_cast<std::int32_t>(vv * c.patches_per_pixel) * c.patch_width + static_cast<std::int32_t>(uu * c.patches_per_pixel);
-      out.x[k] = x;
-      out.y[k] = y;
-      out.z[k] = z;
-      out.patch[k] = inside ? patch : c.outside;
-      out.around[k] =
-          static_cast<std::int32_t>(vv * c.around_per_pixel) * c.around_width + static_cast<std::int32_t>(uu * c.around_per_pixel);
-    }
+    const std::size_t k = 16 * static_cast<std::size_t>(layer);
+    project_layer(projection, start + step.col(2) * static_cast<float>(layer), step.col(0), step.col(1), out.x.data() + k, out.y.data() + k,
+                  out.z.data() + k, out.patch.data() + k, out.around.data() + k);
   }
 }
 
@@ -136,7 +145,12 @@ class Projecting {
   bool update(const Candidate& candidate, SurfaceVoxels* surface, std::array<std::uint8_t, 512>& free_frames,
               std::unique_ptr<SurfaceVoxels>& fresh) const {
     if (candidate.seen == Seen::free) {
-      for (std::size_t i = 0; i < 512; ++i) see_through(i, surface, free_frames);
+      if (surface) {
+        for (std::size_t i = 0; i < 512; ++i) see_through(i, surface, free_frames);
+      } else {
+        const auto limit = static_cast<std::uint8_t>(4 * memory_);
+        for (std::uint8_t& frames : free_frames) frames = static_cast<std::uint8_t>(frames < limit ? frames + 1 : limit);
+      }
       return true;
     }
     const Eigen::Vector3f corner = corner_of(candidate.index);
@@ -234,9 +248,10 @@ class Projecting {
     const float sum = voxel.weight + weight;
     const float share = weight / sum;
     voxel.distance += (distance - voxel.distance) * share;
-    const auto blend = [share](std::uint8_t& old, std::uint8_t add) {
-      const float before = old;
-      old = static_cast<std::uint8_t>(before + (static_cast<float>(add) - before) * share + 0.5f);
+    // In 2^-16, rounded.
+    const auto parts = static_cast<int>(share * 65536.0f + 0.5f);
+    const auto blend = [parts](std::uint8_t& old, std::uint8_t add) {
+      old = static_cast<std::uint8_t>(old + (((add - old) * parts + 32768) >> 16));
     };
     blend(voxel.colour[0], patch.red);
     blend(voxel.colour[1], patch.green);
@@ -254,7 +269,7 @@ class Projecting {
     free_frames[i] = static_cast<std::uint8_t>(frames);
     if (!surface || !config_.projection.forget || forget_after_ == 0 || frames < forget_after_) return;
     TsdfVoxel& voxel = surface->voxels[i];
-    if (voxel.weight <= 0.0f || voxel.distance > voxel_ || frames <= 2 * voxel.surface_frames) return;
+    if (voxel.weight <= 0.0f || voxel.distance > voxel_ || frames <= 2 * std::min<int>(voxel.surface_frames, memory_)) return;
     voxel = TsdfVoxel{};
     surface->labels.clear(static_cast<int>(i));
   }

@@ -37,26 +37,31 @@ struct Columns {
   std::vector<float> count, w, v, nearest, farthest;
 };
 
+// What follows are plain loops over a row, written so that compilers take several patches at once: no branches, conditions as factors of 0
+// or 1, and no two names for one place.
+
+constexpr float when(bool condition) { return condition ? 1.0f : 0.0f; }
+
 // `rows` lines of depth from row `first` on.
 template <int kRows>
-void sum_columns(const float* line, std::size_t stride, int rows, int width, float first, float far, Columns& c) {
-  const int count = kRows > 0 ? kRows : rows;
-  float *const counts = c.count.data(), *const ws = c.w.data(), *const vs = c.v.data();
-  float *const nearest = c.nearest.data(), *const farthest = c.farthest.data();
+void sum_columns(const float* __restrict line, std::size_t stride, int rows, int width, float first, float far, Columns& c) {
+  const int lines = kRows > 0 ? kRows : rows;
+  float* __restrict count = c.count.data(), * __restrict ws = c.w.data(), * __restrict vs = c.v.data();
+  float* __restrict nearest = c.nearest.data(), * __restrict farthest = c.farthest.data();
   for (int u = 0; u < width; ++u) {
     float n = 0.0f, w = 0.0f, v = 0.0f, low = kFar, high = 0.0f;
-    for (int r = 0; r < count; ++r) {
+    for (int r = 0; r < lines; ++r) {
       const float z = line[static_cast<std::size_t>(r) * stride + static_cast<std::size_t>(u)];
-      const bool ok = (z > 0.0f) & (z <= far);
-      const float inverse = 1.0f / (ok ? z : 1.0f);
-      n += ok ? 1.0f : 0.0f;
-      w += ok ? inverse : 0.0f;
-      v += ok ? first + static_cast<float>(r) : 0.0f;
-      const float near_z = ok ? z : kFar, far_z = ok ? z : 0.0f;
+      const float ok = when(z > 0.0f) * when(z <= far);
+      const float divisor = ok > 0.0f ? z : 1.0f;
+      n += ok;
+      w += ok / divisor;
+      v += ok * (first + static_cast<float>(r));
+      const float near_z = ok > 0.0f ? z : kFar, far_z = ok > 0.0f ? z : 0.0f;
       low = near_z < low ? near_z : low;
       high = far_z > high ? far_z : high;
     }
-    counts[u] = n;
+    count[u] = n;
     ws[u] = w;
     vs[u] = v;
     nearest[u] = low;
@@ -64,21 +69,85 @@ void sum_columns(const float* line, std::size_t stride, int rows, int width, flo
   }
 }
 
-// Slopes from the two sides of each patch of a row: between both where they agree, of the flatter one where not. `place` is u or v.
+// Slopes from the two sides of each patch of a row: between both where they agree, of the flatter one where not; 0 and not known where
+// there is neither. `place` is u or v.
 struct Side {
   const float *w, *place;
 };
-void slopes_between(const Side& low, const Side& here, const Side& high, float per_patch, int width, float* slope, float* known) {
+void slopes_between(const Side& low, const Side& here, const Side& high, float per_patch, int width, float* __restrict slope,
+                    float* __restrict known) {
+  const float* __restrict w_low = low.w, * __restrict w_here = here.w, * __restrict w_high = high.w;
+  const float* __restrict at_low = low.place, * __restrict at_here = here.place, * __restrict at_high = high.place;
   for (int x = 0; x < width; ++x) {
-    const bool has_low = low.w[x] > 0.0f, has_high = high.w[x] > 0.0f;
-    const float below = (here.w[x] - low.w[x]) / (has_low ? here.place[x] - low.place[x] : 1.0f);
-    const float above = (high.w[x] - here.w[x]) / (has_high ? high.place[x] - here.place[x] : 1.0f);
-    const float across = (high.w[x] - low.w[x]) / (has_low & has_high ? high.place[x] - low.place[x] : 1.0f);
+    const float l = w_low[x], h = w_here[x], u = w_high[x], x_l = at_low[x], x_h = at_here[x], x_u = at_high[x];
+    const float has_l = when(l > 0.0f), has_u = when(u > 0.0f), both = has_l * has_u;
+    const float step_l = x_h - x_l, step_u = x_u - x_h, step = x_u - x_l;
+    const float below = (h - l) / (has_l > 0.0f ? step_l : 1.0f);
+    const float above = (u - h) / (has_u > 0.0f ? step_u : 1.0f);
+    const float across = (u - l) / (both > 0.0f ? step : 1.0f);
     const float flatter = std::abs(below) < std::abs(above) ? below : above;
-    const float both = std::abs(below - above) <= here.w[x] * per_patch ? across : flatter;
-    const float one = has_low ? below : above;
-    slope[x] = has_low & has_high ? both : one;
-    known[x] = (has_low | has_high) & (here.w[x] > 0.0f) ? known[x] : 0.0f;
+    const float of_both = std::abs(below - above) <= h * per_patch ? across : flatter;
+    const float of_one = has_l > 0.0f ? below : above;
+    const float any = both > 0.0f ? of_both : of_one;
+    const float sure = known[x] * when(l + u > 0.0f);
+    slope[x] = sure > 0.0f ? any : 0.0f;
+    known[x] = sure;
+  }
+}
+
+// One row of patches, and the same row seen from a neighbour's side.
+struct Row {
+  const float *w, *u, *v, *slope_u, *slope_v, *known;
+};
+
+// Adds the slopes of the neighbours that lie on a patch's plane.
+void add_friends(const Row& own, const Row& other, float noise, int width, float* __restrict sum_u, float* __restrict sum_v,
+                 float* __restrict friends) {
+  const float* __restrict w = own.w, * __restrict u = own.u, * __restrict v = own.v;
+  const float* __restrict su = own.slope_u, * __restrict sv = own.slope_v;
+  const float* __restrict other_w = other.w, * __restrict other_u = other.u, * __restrict other_v = other.v;
+  const float* __restrict other_su = other.slope_u, * __restrict other_sv = other.slope_v, * __restrict known = other.known;
+  for (int x = 0; x < width; ++x) {
+    const float expected = w[x] + su[x] * (other_u[x] - u[x]) + sv[x] * (other_v[x] - v[x]);
+    const float same = when(known[x] > 0.0f) * when(std::abs(other_w[x] - expected) <= noise * w[x]);
+    sum_u[x] += same * other_su[x];
+    sum_v[x] += same * other_sv[x];
+    friends[x] += same;
+  }
+}
+
+struct PlaneRules {
+  float fx, fy, cx, cy;
+  float side;                        // pixels along a patch
+  float pixel_noise;                 // share of depth that one pixel may stray
+  float least_friends, more_spread;  // metres
+  float least_cosine;
+  float by_range, by_incidence;  // 1: weighted by it
+};
+
+// From summed slopes (in nx and ny) to planes and weights; weight 0 where there is none.
+void make_planes(const PlaneRules& rules, const Row& row, const float* __restrict spread, const float* __restrict share,
+                 const float* __restrict friends, int width, float* __restrict nx, float* __restrict ny, float* __restrict nz,
+                 float* __restrict hs, float* __restrict weight) {
+  const PlaneRules c = rules;
+  const float* __restrict ws = row.w, * __restrict us = row.u, * __restrict vs = row.v, * __restrict known = row.known;
+  const float per_fx = 1.0f / c.fx, per_fy = 1.0f / c.fy;
+  for (int x = 0; x < width; ++x) {
+    const float there = known[x], inverse = ws[x];
+    const float w = there > 0.0f ? inverse : 1.0f, depth = 1.0f / w, scale = 1.0f / (friends[x] + 1.0f);
+    const float su = nx[x] * scale, sv = ny[x] * scale;
+    const float sloped = (std::abs(su) + std::abs(sv)) * c.side * depth * depth;
+    const float qx = su * c.fx, qy = sv * c.fy, qz = w + su * (c.cx - us[x]) + sv * (c.cy - vs[x]);
+    const float h = 1.0f / std::sqrt(qx * qx + qy * qy + qz * qz);
+    const float rx = (us[x] - c.cx) * per_fx, ry = (vs[x] - c.cy) * per_fy;
+    const float cosine = h * w / std::sqrt(rx * rx + ry * ry + 1.0f);
+    const float good = there * when(friends[x] >= c.least_friends) * when(spread[x] <= sloped + c.pixel_noise * depth + c.more_spread) *
+                       when(cosine >= c.least_cosine);
+    weight[x] = good * share[x] * (c.by_range > 0.0f ? w * w : 1.0f) * (c.by_incidence > 0.0f ? cosine : 1.0f);
+    nx[x] = qx * h;
+    ny[x] = qy * h;
+    nz[x] = qz * h;
+    hs[x] = h;
   }
 }
 
@@ -100,16 +169,25 @@ class Patching {
     const double steepest = to_radians(config.projection.max_incidence_deg);
     // Largest change of depth from pixel to pixel, as a share of depth.
     steep_share_ = static_cast<float>(std::tan(steepest) / std::min(intrinsics.fx, intrinsics.fy));
-    least_cosine_ = static_cast<float>(std::cos(steepest));
     least_count_ = static_cast<float>(std::max(1, side_ * side_ / 4));
-    reject_edges_ = config.projection.reject_edges;
+    const ProjectionConfig& p = config.projection;
+    rules_ = {static_cast<float>(intrinsics.fx),  static_cast<float>(intrinsics.fy), static_cast<float>(intrinsics.cx),
+              static_cast<float>(intrinsics.cy),  static_cast<float>(side_),         kPixelNoise * noise_,
+              p.reject_edges ? 2.0f : 0.0f,       p.reject_edges ? 0.0f : kFar,      static_cast<float>(std::cos(steepest)),
+              when(config.inverse_square_weight), when(p.incidence_weight)};
   }
 
   PatchImage run() {
     const auto rows = static_cast<std::size_t>(height_);
     parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
       Columns columns(static_cast<std::size_t>(width_ * side_));
-      for (std::size_t y = begin; y < end; ++y) average_row(static_cast<int>(y), columns);
+      for (std::size_t y = begin; y < end; ++y) {
+        if (side_ == 4) {
+          average_row<4>(static_cast<int>(y), columns);
+        } else {
+          average_row<0>(static_cast<int>(y), columns);
+        }
+      }
     });
     parallel_for(rows, kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y) slope_row(static_cast<int>(y));
@@ -126,13 +204,15 @@ class Patching {
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y + 1) * stride_ + static_cast<std::size_t>(x + 1); }
   bool valid(float z) const { return (z > 0.0f) & (z <= max_depth_); }
 
+  template <int kSide>
   void average_row(int y, Columns& c) {
+    const int side = kSide > 0 ? kSide : side_;
     const int rows = std::min(side_, intrinsics_.height - side_ * y), width = intrinsics_.width;
     const float* const line = frame_.depth.ptr<float>(side_ * y);
     const std::size_t stride = frame_.depth.step1();
     const auto first = static_cast<float>(side_ * y);
-    if (rows == 4) {
-      sum_columns<4>(line, stride, rows, width, first, max_depth_, c);
+    if (kSide > 0 && rows == kSide) {
+      sum_columns<kSide>(line, stride, rows, width, first, max_depth_, c);
     } else {
       sum_columns<0>(line, stride, rows, width, first, max_depth_, c);
     }
@@ -140,8 +220,8 @@ class Patching {
     SurfacePatch* const patches = result_.patches.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
     for (int x = 0; x < width_; ++x) {
       float count = 0.0f, w = 0.0f, u_sum = 0.0f, v_sum = 0.0f, nearest = kFar, farthest = 0.0f;
-      for (int i = 0; i < side_; ++i) {
-        const auto u = static_cast<std::size_t>(x * side_ + i);
+      for (int i = 0; i < side; ++i) {
+        const auto u = static_cast<std::size_t>(x * side + i);
         count += c.count[u];
         w += c.w[u];
         u_sum += c.count[u] * static_cast<float>(i);
@@ -168,7 +248,7 @@ class Patching {
       }
       means_.known[i] = 1.0f;
       paint(x, y, mixed, from, to, patches[x]);
-      if (!labels_.empty()) patches[x].label = label_of(x, y, from, to);
+      if (!labels_.empty()) patches[x].label = label_of(x, y, from, to, side);
     }
   }
 
@@ -230,21 +310,30 @@ class Patching {
       }
     }
     if (count == 0) return;
+    if (count == 4) {
+      patch.red = static_cast<std::uint8_t>((red + 2) >> 2);
+      patch.green = static_cast<std::uint8_t>((green + 2) >> 2);
+      patch.blue = static_cast<std::uint8_t>((blue + 2) >> 2);
+      return;
+    }
     patch.red = static_cast<std::uint8_t>((red + count / 2) / count);
     patch.green = static_cast<std::uint8_t>((green + count / 2) / count);
     patch.blue = static_cast<std::uint8_t>((blue + count / 2) / count);
   }
 
-  std::int32_t label_of(int x, int y, float from, float to) const {
-    const int u0 = side_ * x, v0 = side_ * y;
-    const int u1 = std::min(intrinsics_.width, u0 + side_), v1 = std::min(intrinsics_.height, v0 + side_);
+  std::int32_t label_of(int x, int y, float from, float to, int side) const {
+    const int u0 = side * x, v0 = side * y;
+    const bool whole = u0 + side <= intrinsics_.width && v0 + side <= intrinsics_.height;
     const auto row = [&](int v) { return labels_.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(intrinsics_.width); };
-    const std::int32_t first = row(v0)[u0];
-    bool same = true;
-    for (int v = v0; v < v1; ++v) {
-      for (int u = u0; u < u1; ++u) same &= row(v)[u] == first;
+    if (whole) {
+      const std::int32_t first = row(v0)[u0];
+      std::int32_t differs = 0;
+      for (int v = 0; v < side; ++v) {
+        const std::int32_t* const line = row(v0 + v) + u0;
+        for (int u = 0; u < side; ++u) differs |= line[u] ^ first;
+      }
+      if (differs == 0) return first;
     }
-    if (same) return first;
     std::array<std::int32_t, kLargest * kLargest> seen;
     std::size_t count = 0;
     for_pixels(x, y, [&](int u, int v, float z) {
@@ -275,70 +364,43 @@ class Patching {
                    known);
   }
 
-  // Slopes of a row, averaged over the neighbours on the same plane, and how many these are.
+  // Planes of a row; nx and ny hold summed slopes before.
   struct Planes {
-    explicit Planes(std::size_t width) : u(width), v(width), friends(width) {}
-    std::vector<float> u, v, friends;
+    explicit Planes(std::size_t width) : nx(width), ny(width), nz(width), h(width), weight(width), friends(width) {}
+    std::vector<float> nx, ny, nz, h, weight, friends;
   };
 
-  void average_slopes(int y, Planes& out) const {
-    const std::size_t i = at(0, y);
-    const float *const w = means_.w.data() + i, *const u = means_.u.data() + i, *const v = means_.v.data() + i;
-    const float *const su = means_.slope_u.data() + i, *const sv = means_.slope_v.data() + i;
-    float *const sum_u = out.u.data(), *const sum_v = out.v.data(), *const friends = out.friends.data();
-    std::copy_n(su, width_, sum_u);
-    std::copy_n(sv, width_, sum_v);
-    std::fill(out.friends.begin(), out.friends.end(), 0.0f);
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (dx == 0 && dy == 0) continue;
-        const std::size_t j = at(dx, y + dy);
-        const float *const ow = means_.w.data() + j, *const ou = means_.u.data() + j, *const ov = means_.v.data() + j;
-        const float *const osu = means_.slope_u.data() + j, *const osv = means_.slope_v.data() + j, *const known = means_.known.data() + j;
-        for (int x = 0; x < width_; ++x) {
-          const float expected = w[x] + su[x] * (ou[x] - u[x]) + sv[x] * (ov[x] - v[x]);
-          const bool same = (known[x] > 0.0f) & (std::abs(ow[x] - expected) <= noise_ * w[x]);
-          sum_u[x] += same ? osu[x] : 0.0f;
-          sum_v[x] += same ? osv[x] : 0.0f;
-          friends[x] += same ? 1.0f : 0.0f;
-        }
-      }
-    }
+  Row row_at(std::size_t i) const {
+    return {means_.w.data() + i,       means_.u.data() + i,       means_.v.data() + i,
+            means_.slope_u.data() + i, means_.slope_v.data() + i, means_.known.data() + i};
   }
 
   void plane_row(int y, Planes& planes) {
-    average_slopes(y, planes);
-    const auto fx = static_cast<float>(intrinsics_.fx), fy = static_cast<float>(intrinsics_.fy);
-    const auto cx = static_cast<float>(intrinsics_.cx), cy = static_cast<float>(intrinsics_.cy);
+    const std::size_t i = at(0, y);
+    const Row own = row_at(i);
+    std::copy_n(own.slope_u, width_, planes.nx.data());
+    std::copy_n(own.slope_v, width_, planes.ny.data());
+    std::fill(planes.friends.begin(), planes.friends.end(), 0.0f);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        add_friends(own, row_at(at(dx, y + dy)), noise_, width_, planes.nx.data(), planes.ny.data(), planes.friends.data());
+      }
+    }
+    make_planes(rules_, own, means_.spread.data() + i, means_.share.data() + i, planes.friends.data(), width_, planes.nx.data(),
+                planes.ny.data(), planes.nz.data(), planes.h.data(), planes.weight.data());
     SurfacePatch* const patches = result_.patches.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    const bool plane = config_.projection.plane_distance;
     for (int x = 0; x < width_; ++x) {
-      const std::size_t i = at(x, y);
-      if (means_.known[i] <= 0.0f) continue;
       const auto k = static_cast<std::size_t>(x);
-      const float w = means_.w[i], depth = 1.0f / w, scale = 1.0f / (planes.friends[k] + 1.0f);
-      const float su = planes.u[k] * scale, sv = planes.v[k] * scale;
-      if (reject_edges_) {
-        const float sloped = (std::abs(su) + std::abs(sv)) * static_cast<float>(side_) * depth * depth;
-        if (planes.friends[k] < 2.0f || means_.spread[i] > sloped + kPixelNoise * noise_ * depth) continue;
-      }
-      const float qx = su * fx, qy = sv * fy, qz = w + su * (cx - means_.u[i]) + sv * (cy - means_.v[i]);
-      const float h = 1.0f / std::sqrt(qx * qx + qy * qy + qz * qz);
-      const float rx = (means_.u[i] - cx) / fx, ry = (means_.v[i] - cy) / fy;
-      const float cosine = h * w / std::sqrt(rx * rx + ry * ry + 1.0f);
-      if (!(cosine >= least_cosine_)) continue;
+      if (planes.weight[k] <= 0.0f) continue;
       SurfacePatch& patch = patches[x];
-      patch.depth = depth;
-      patch.weight = means_.share[i] * (config_.inverse_square_weight ? w * w : 1.0f);
-      if (config_.projection.incidence_weight) patch.weight *= cosine;
-      if (config_.projection.plane_distance) {
-        patch.nx = qx * h;
-        patch.ny = qy * h;
-        patch.nz = qz * h;
-        patch.h = h;
-      } else {
-        patch.nz = 1.0f;
-        patch.h = depth;
-      }
+      patch.depth = 1.0f / own.w[x];
+      patch.weight = planes.weight[k];
+      patch.nx = plane ? planes.nx[k] : 0.0f;
+      patch.ny = plane ? planes.ny[k] : 0.0f;
+      patch.nz = plane ? planes.nz[k] : 1.0f;
+      patch.h = plane ? planes.h[k] : patch.depth;
     }
   }
 
@@ -348,8 +410,8 @@ class Patching {
   const TsdfConfig& config_;
   int side_ = 0, width_ = 0, height_ = 0;
   std::size_t stride_ = 0;
-  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_cosine_ = 0.0f, least_count_ = 1.0f;
-  bool reject_edges_ = true;
+  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_count_ = 1.0f;
+  PlaneRules rules_{};
   Means means_;
   PatchImage result_;
 };

@@ -108,8 +108,15 @@ VoxelState TsdfVolume::state(const Eigen::Vector3i& voxel) const {
 
 void TsdfVolume::expect_same_grid(const TsdfConfig& config) const {
   if (voxel_m() == config.voxel_m && config_.truncation_voxels == config.truncation_voxels) return;
-  throw Error("tsdf.voxel_m, tsdf.truncation_voxels: " + std::to_string(config.voxel_m) + ", " + std::to_string(config.truncation_voxels) +
-              "; expected those of the map, " + std::to_string(voxel_m()) + ", " + std::to_string(config_.truncation_voxels));
+  throw Error("mapper.integrate: voxel_m and truncation_voxels are " + std::to_string(config.voxel_m) + ", " +
+              std::to_string(config.truncation_voxels) + "; expected the map's own, " + std::to_string(voxel_m()) + ", " +
+              std::to_string(config_.truncation_voxels));
+}
+
+void TsdfVolume::configure(const TsdfConfig& config) {
+  expect_same_grid(config);
+  config_ = config;
+  forgets_ = config.method == "projection" && config.projection.forget;
 }
 
 void TsdfVolume::merge_labels(std::int32_t from, std::int32_t to) {

@@ -85,6 +85,8 @@ class TsdfVolume {
 
   // Throws Error where a configuration's voxel size or truncation are not those of this volume (a map that is resumed with other settings).
   void expect_same_grid(const TsdfConfig& config) const;
+  // Goes on under another configuration of the same grid; throws Error as above.
+  void configure(const TsdfConfig& config);
 
   // From now on, what was counted as `from` counts as `to` (objects that turned out to be one).
   void merge_labels(std::int32_t from, std::int32_t to);

@@ -4,6 +4,7 @@
 // two in one run, which drifts less from machine to machine than milliseconds do.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <type_traits>
 
@@ -16,6 +17,9 @@
 #include "mapper/integrate/projective_integrator.h"
 #include "mapper/integrate/surface_patches.h"
 #include "tests/mapper/integrate_scene.h"
+#ifdef WARETWIN_OPEN3D
+#include "tests/bench/open3d_peer.h"
+#endif
 
 namespace waretwin {
 namespace {
@@ -83,6 +87,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
 void BackProjection(benchmark::State& state) {
   std::size_t i = 0;
   views();
@@ -96,6 +105,7 @@ void Integrate(benchmark::State& state) {
   config.carve = state.range(0) != 0;
   TsdfVolume volume(config);
   SomeIntegrator integrator(config);
+  std::vector<double> frame_ms;
   double bound = 0.0, own = 0.0, valid = 0.0, depth = 0.0;
   for (const View& v : views()) {
     for (int row = 0; row < camera().height; ++row) {
@@ -111,13 +121,15 @@ void Integrate(benchmark::State& state) {
     const View& v = views()[i++ % views().size()];
     const auto start = std::chrono::steady_clock::now();
     integrator.integrate(v.in.frame, camera(), v.in.labels, v.X_WC, volume);
-    own += seconds_since(start);
+    frame_ms.push_back(1e3 * seconds_since(start));
+    own += 1e-3 * frame_ms.back();
     state.PauseTiming();
     const auto bound_start = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(back_project(v));
     bound += seconds_since(bound_start);
     state.ResumeTiming();
   }
+  state.counters["median_ms"] = median(frame_ms);
   state.counters["vs_back_projection"] = own / bound;
   state.counters["points"] = valid / static_cast<double>(views().size());
   state.counters["mean_depth_m"] = depth / valid;
@@ -137,6 +149,34 @@ BENCHMARK(Integrate<ProjectiveIntegrator>)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
+
+// The peer on the same frames in the same run: `ours` and `peer` are median milliseconds, frame by frame in turns.
+#ifdef WARETWIN_OPEN3D
+void AgainstOpen3d(benchmark::State& state) {
+  const TsdfConfig config = config_of<ProjectiveIntegrator>();
+  TsdfVolume volume(config);
+  ProjectiveIntegrator integrator(config);
+  bench::Open3dPeer peer(camera());
+  std::vector<double> ours, theirs;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& v = views()[i++ % views().size()];
+    peer.prepare(v.in.frame, v.X_WC);
+    const auto start = std::chrono::steady_clock::now();
+    peer.integrate();
+    theirs.push_back(1e3 * seconds_since(start));
+    const auto middle = std::chrono::steady_clock::now();
+    integrator.integrate(v.in.frame, camera(), v.in.labels, v.X_WC, volume);
+    const double own = seconds_since(middle);
+    ours.push_back(1e3 * own);
+    state.SetIterationTime(own);
+  }
+  state.counters["ours"] = median(ours);
+  state.counters["peer"] = median(theirs);
+  state.counters["faster"] = median(theirs) / median(ours);
+}
+BENCHMARK(AgainstOpen3d)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(60);
+#endif
 
 void MakePatches(benchmark::State& state) {
   const TsdfConfig config = config_of<ProjectiveIntegrator>();
