@@ -71,6 +71,13 @@ Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info
 
 Mapper::~Mapper() = default;
 
+void Mapper::resume(LoadedMap map) {
+  map.volume->configure(config_.integrate);
+  map_.objects = std::move(map.objects);
+  map_.volume = std::move(map.volume);
+  map_.frames_before = map.frames;
+}
+
 void Mapper::consume(SensorEvent event) {
   const Stamp stamp = stamp_of(event);
   if (last_stamp_ && stamp < *last_stamp_) {
@@ -126,7 +133,7 @@ void Mapper::take(RgbdFrame frame) {
 
   FrameReport report;
   report.stamp = frame.stamp;
-  report.frame_id = static_cast<int>(map_.frames.size());
+  report.frame_id = map_.frames_before + static_cast<int>(map_.frames.size());
   Stopwatch watch;
   const std::optional<Pose> X_WB = stages_.localiser->pose_at(frame);
   // Localising goes on between frames: a frame answers for all scans since the one before.

@@ -10,6 +10,7 @@
 
 #include "mapper/mapper_config.h"
 #include "mapper/object_list.h"
+#include "mapper/output/map_archive.h"
 #include "mapper/stages.h"
 #include "sensors/sensor_stream.h"
 
@@ -36,6 +37,7 @@ struct ObjectMap {
   std::unique_ptr<TsdfVolume> volume;
   std::vector<TrajectoryPoint> trajectory;  // one point a scan
   std::vector<FrameReport> frames;
+  int frames_before = 0;           // mapped frames of the map that this one went on from
   int frames_seen = 0;             // camera frames in the stream
   int frames_dropped_by_rate = 0;  // left out to keep the mapping rate
   int frames_without_pose = 0;
@@ -46,6 +48,10 @@ class Mapper {
  public:
   Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info);
   ~Mapper();
+
+  // Goes on from a saved map: its objects with their ids, its volume; frames count on from its last. The poses must be in its world.
+  // Before the first event. Throws Error where its voxels or truncation are not the configuration's.
+  void resume(LoadedMap map);
 
   // Takes the next event. Throws Error where stamps go back or a frame's camera is not in the stream's info. Frames beyond the mapping rate
   // are dropped and counted.

@@ -14,6 +14,8 @@ MapperConfig MapperConfig::make(const std::string& profile) {
   if (profile == "best") {
     config.objects = "evidence";
     config.label_margin_m = 0.015;
+    config.integrate.method = "projection";
+    config.integrate.mesh_min_weight = 0.02;  // one frame from 5 m, head on
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper or best");

@@ -8,6 +8,7 @@
 #include "mapper/detect/boxes_detector.h"
 #include "mapper/detect/yolo_detector.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
+#include "mapper/integrate/projective_integrator.h"
 #include "mapper/localise/laser_icp_localiser.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/segment/evidence_segmenter.h"
@@ -55,6 +56,11 @@ std::unique_ptr<Associator> make_associator(const MapperConfig& config) {
   return std::make_unique<PaperAssociator>(config.associate);
 }
 
+std::unique_ptr<Integrator> make_integrator(const TsdfConfig& config) {
+  if (config.method == "projection") return std::make_unique<ProjectiveIntegrator>(config);
+  return std::make_unique<GroupedRayIntegrator>(config);
+}
+
 Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
   Stages stages;
   stages.localiser = make_localiser(config, info);
@@ -65,7 +71,7 @@ Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
     stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
   }
   stages.associator = make_associator(config);
-  stages.integrator = std::make_unique<GroupedRayIntegrator>(config.integrate);
+  stages.integrator = make_integrator(config.integrate);
   return stages;
 }
 

@@ -32,4 +32,7 @@ std::unique_ptr<Associator> make_associator(const MapperConfig& config);
 // without scans).
 Stages make_stages(const MapperConfig& config, const StreamInfo& info);
 
+// The integrator that config.method names.
+std::unique_ptr<Integrator> make_integrator(const TsdfConfig& config);
+
 }  // namespace waretwin

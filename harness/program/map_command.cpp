@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
@@ -31,6 +33,7 @@ int map(const MapOptions& options) {
   config.mapper = options.mapping.mapper_config();
   if (!options.poses.empty()) config.mapper.poses = options.poses;
   config.frames = options.mapping.frames;
+  config.resume = options.mapping.resume;
   // Other people's worlds have their zero anywhere, often at the first camera; our own recordings have it on the floor.
   if (!std::filesystem::exists(std::filesystem::path(options.recording) / "recording.yaml")) {
     config.mapper.segment.planes.ground = "lowest_plane";
@@ -40,6 +43,8 @@ int map(const MapOptions& options) {
 
   const auto stream = open_recording(options.recording, config.recording);
   Stages stages = make_stages(config.mapper, stream->info());
+  // Before the folder is made: the map may be the one that is there.
+  std::optional<LoadedMap> resumed = load_resumed(config.resume, config.mapper.integrate);
   RunFolder folder(options.out);
   MapConfig resolved = config;
   folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "recording " + options.recording));
@@ -51,7 +56,7 @@ int map(const MapOptions& options) {
     hooks.progress = [&](double done, const ObjectMap& map) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     };
-    result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks);
+    result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
   }
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
   write_mapping(folder, result, options.recording, config.mapper.profile);

@@ -22,13 +22,16 @@ void MappingOptions::add_to(CLI::App& command, const std::string& detector_help)
       ->type_name("N")
       ->check(whole_number())
       ->check(CLI::Range(0, 1000000000));
+  command
+      .add_option("--resume", resume, "an earlier run's map.waretwin, to go on from: objects keep their ids; poses must be in its world")
+      ->type_name("MAP");
   CLI::Option* from_file =
       command
           .add_option("--config", config_file,
                       "an earlier run's config.yaml, or a part of one: repeats it; --seed and --set still change single values")
           ->type_name("FILE");
   // The file settles what these would.
-  for (const char* settled : {"--profile", "--detector", "--rate", "--frames"}) from_file->excludes(settled);
+  for (const char* settled : {"--profile", "--detector", "--rate", "--frames", "--resume"}) from_file->excludes(settled);
 }
 
 MapperConfig MappingOptions::mapper_config() const {

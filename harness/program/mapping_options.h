@@ -14,6 +14,7 @@ struct MappingOptions {
   std::optional<std::string> detector;
   std::optional<double> rate_hz;
   int frames = 0;
+  std::string resume;
   std::string config_file;
 
   void add_to(CLI::App& command, const std::string& detector_help);

@@ -35,6 +35,7 @@ RunConfig configure(const RunOptions& options) {
   config.truth_stages.association = options.association == "truth";
   config.simulation.truth_depth = options.depth == "truth";
   config.simulation.max_frames = options.mapping.frames;
+  config.resume = options.mapping.resume;
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
   for (Setting& setting : options.common.settings()) settings.push_back(std::move(setting));

@@ -43,6 +43,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   std::map<std::string, cv::Mat> fields;
   for (const auto& [name, camera] : cameras) fields[name] = depth_field_mask(camera);
   DepthQualityMeter depth_quality;
+  SurfaceMeter surface(stream.ray_caster());
   SensorPoses sensor_poses(stream, config.scenario.sensors);
   std::vector<ObjectView> views;  // of the frame that was mapped last
   ClosedLoopResult result;
@@ -52,6 +53,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     const FrameTruth& truth = stream.last_frame_truth();
     if (coverage) coverage->add_frame(frame.frame.sensor, truth.X_WC);
     const CameraConfig& camera = cameras.at(frame.frame.sensor);
+    surface.add_frame(camera, truth.X_WC);
     depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
                       camera.depth_max_m);
     if (!config.truth_frames.enabled) return;
@@ -65,8 +67,10 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     hooks.truth_picture = [&](const RgbdFrame& frame) { return draw_truth(frame.colour, stream.last_frame_truth(), views, *scene); };
   }
   Stages stages = stages_with_truth(config, stream);
+  // Before the folder is made: the map may be the one that is there.
+  std::optional<LoadedMap> resumed = load_resumed(config.resume, config.mapper.integrate);
   if (ready) ready();
-  result.mapping = map_stream(stream, config.mapper, std::move(stages), config.simulation.max_frames, hooks);
+  result.mapping = map_stream(stream, config.mapper, std::move(stages), config.simulation.max_frames, hooks, std::move(resumed));
 
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
@@ -84,6 +88,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
   if (!map.frames.empty()) score.depth = depth_quality.result();
+  if (!map.frames.empty()) score.surface = surface.result(extract_mesh(*map.volume));
   score.motion = stream.motion();
   score.timing_ms = summarise_stages(result.mapping.frames);
   score.frames_simulated = map.frames_seen;

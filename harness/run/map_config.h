@@ -1,6 +1,8 @@
 // What mapping a recording depends on.
 #pragma once
 
+#include <string>
+
 #include "core/fields.h"
 #include "mapper/mapper_config.h"
 #include "sensors/recordings/recording.h"
@@ -11,11 +13,13 @@ struct MapConfig {
   RecordingConfig recording;
   MapperConfig mapper;
   int frames = 0;
+  std::string resume;
 
   void visit(Fields& f) {
     f.group("recording", recording, "how the recording is read");
     f.group("mapper", mapper, "the mapper");
     f("frames", frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+    f("resume", resume, "the map.waretwin to go on from; empty: a new map");
   }
 };
 

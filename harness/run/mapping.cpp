@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <utility>
 
+#include "core/error.h"
 #include "harness/pictures/frame_pictures.h"
 #include "mapper/integrate/tsdf_volume.h"
+#include "mapper/output/map_archive.h"
 
 namespace waretwin {
 
@@ -48,13 +52,26 @@ class Album {
 
 }  // namespace
 
-MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stages stages, int max_frames, const MappingHooks& hooks) {
+std::optional<LoadedMap> load_resumed(const std::string& file, const TsdfConfig& config) {
+  if (file.empty()) return std::nullopt;
+  LoadedMap map = load_map(file);
+  try {
+    map.volume->expect_same_grid(config);
+  } catch (const Error& e) {
+    throw Error(std::filesystem::path(file), e.what());
+  }
+  return map;
+}
+
+MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stages stages, int max_frames, const MappingHooks& hooks,
+                         std::optional<LoadedMap> resumed) {
   const StreamInfo& info = stream.info();
   MappingResult result;
   Album album;
   double source_ms = 0.0;
   std::vector<double> source_times;
   Mapper mapper(config, std::move(stages), info);
+  if (resumed) mapper.resume(std::move(*resumed));
   mapper.on_frame = [&](const Mapper::FrameResult& frame) {
     source_times.push_back(source_ms);
     const int index = static_cast<int>(source_times.size()) - 1;

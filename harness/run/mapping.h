@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,12 @@ struct MappingHooks {
   std::function<cv::Mat(const RgbdFrame&)> truth_picture;
 };
 
-// Maps the stream to its end, or up to `max_frames` camera frames (0 = all).
-MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stages stages, int max_frames, const MappingHooks& hooks);
+// The map.waretwin to go on from, where one is named. Throws Error naming the file where it is none or its voxels are not the
+// configuration's.
+std::optional<LoadedMap> load_resumed(const std::string& file, const TsdfConfig& config);
+
+// Maps the stream to its end, or up to `max_frames` camera frames (0 = all), into a new map or on from `resumed`.
+MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stages stages, int max_frames, const MappingHooks& hooks,
+                         std::optional<LoadedMap> resumed = std::nullopt);
 
 }  // namespace waretwin

@@ -26,6 +26,7 @@ void RunConfig::visit(Fields& f) {
   f.group("truth_detector", truth_detector, "which objects get a true box");
   f.group("truth_frames", truth_frames, "the truth of mapped frames");
   f.group("score", score, "how map and truth are compared");
+  f("resume", resume, "the map.waretwin to go on from; empty: a new map");
 }
 
 RunConfig load_run_config(const fs::path& scenario, RunConfig base, const fs::path& config, const std::vector<Setting>& settings) {

@@ -31,6 +31,7 @@ struct RunConfig {
   TruthDetectorConfig truth_detector;
   TruthFramesConfig truth_frames;
   ScoringRules score;
+  std::string resume;  // the map.waretwin to go on from; empty: a new map
 
   void visit(Fields& f);
 };

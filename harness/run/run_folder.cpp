@@ -61,8 +61,8 @@ double picture_ceiling(const SurfaceMesh& mesh) {
   return static_cast<double>(*low) + kHeight;
 }
 
-const std::vector<std::string> kMapFiles = {"cuboids.json",  "map.glb",        "map.ply",        "cloud.ply",  "map.waretwin",
-                                            "occupancy.pgm", "occupancy.yaml", "trajectory.tum", "timing.csv", "config.yaml"};
+const std::vector<std::string> kMapFiles = {"cuboids.json",   "map.glb",   "map.ply",        "cloud.ply",  "map.waretwin", "occupancy.pgm",
+                                            "occupancy.yaml", "esdf.nrrd", "trajectory.tum", "timing.csv", "config.yaml"};
 
 }  // namespace
 
@@ -124,8 +124,9 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   }
   if (!upright) folder.write("upright.json", upright_json(map.X_RW));
   write_map_glb(folder.file("map.glb"), mesh, objects);
-  save_map(folder.file("map.waretwin"), objects, *map.volume);
+  save_map(folder.file("map.waretwin"), objects, *map.volume, map.frames_before + static_cast<int>(map.frames.size()));
   write_occupancy(folder.file("occupancy.pgm"), make_occupancy_grid(*map.volume, OccupancyConfig{}));
+  write_distance_field(folder.file("esdf.nrrd"), make_distance_field(*map.volume, DistanceFieldConfig{}));
   write_cuboids(folder.file("cuboids.json"), upright ? "world" : "upright", objects);
   std::vector<StampedPose> trajectory = stamped(map.trajectory);
   for (StampedPose& point : trajectory) point.X_WB = map.X_RW * point.X_WB;

@@ -10,6 +10,7 @@
 #include "harness/score/depth_quality.h"
 #include "harness/score/explain.h"
 #include "harness/score/object_score.h"
+#include "harness/score/surface_score.h"
 #include "harness/score/trajectory_score.h"
 #include "sim/motion/hall_motion.h"
 
@@ -40,6 +41,7 @@ struct RunScore {
   ComparedLists objects;
   std::optional<TrajectoryScore> trajectory, trajectory_aligned;
   std::optional<DepthQuality> depth;               // of the mapped frames
+  std::optional<SurfaceScore> surface;             // the mesh against the hall
   std::optional<MotionReport> motion;              // what moved in the hall and what the vehicle touched
   std::map<std::string, TimingSummary> timing_ms;  // simulate, localise, detect, segment, associate, integrate, frame
   int frames_simulated = 0, frames_mapped = 0, frames_dropped = 0, frames_without_pose = 0;

@@ -119,6 +119,16 @@ std::string score_json(const RunScore& score) {
     json["depth"]["median_abs_error_m"] = score.depth->median_abs_error_m;
     json["depth"]["p95_abs_error_m"] = score.depth->p95_abs_error_m;
   }
+  json["surface"] = nullptr;
+  if (score.surface) {
+    json["surface"] = {{"mean_m", score.surface->mean_m},
+                       {"median_m", score.surface->median_m},
+                       {"p95_m", score.surface->p95_m},
+                       {"share_over_30mm", score.surface->share_over_30mm},
+                       {"found", score.surface->found},
+                       {"vertices", score.surface->vertices},
+                       {"seen_points", score.surface->seen_points}};
+  }
   json["motion"] = score.motion ? motion_json(*score.motion) : Json(nullptr);
   json["trajectory"] = nullptr;
   if (score.trajectory) {

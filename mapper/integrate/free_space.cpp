@@ -1,109 +1,14 @@
 #include "mapper/integrate/free_space.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "mapper/integrate/depth_pyramid.h"
 
 namespace waretwin {
 
 namespace {
-
-constexpr float kFar = std::numeric_limits<float>::infinity();
-
-// Smallest and largest depth in square tiles of 4 x 4, 8 x 8, 16 x 16 ... pixels. A tile of which less than half is valid has smallest
-// depth 0: nothing behind it counts as seen.
-class DepthPyramid {
- public:
-  DepthPyramid(const cv::Mat& depth) {
-    Level base;
-    base.width = (depth.cols + 3) / 4;
-    base.height = (depth.rows + 3) / 4;
-    base.allocate();
-    parallel_for(static_cast<std::size_t>(base.height), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) base_row(depth, static_cast<int>(row), base);
-    });
-    levels_.push_back(std::move(base));
-    while (levels_.back().width > 1 || levels_.back().height > 1) {
-      const Level& fine = levels_.back();
-      Level coarse;
-      coarse.width = (fine.width + 1) / 2;
-      coarse.height = (fine.height + 1) / 2;
-      coarse.allocate();
-      for (int y = 0; y < fine.height; ++y) {
-        for (int x = 0; x < fine.width; ++x) {
-          const std::size_t to = coarse.at(x / 2, y / 2), from = fine.at(x, y);
-          coarse.smallest[to] = std::min(coarse.smallest[to], fine.smallest[from]);
-          coarse.largest[to] = std::max(coarse.largest[to], fine.largest[from]);
-        }
-      }
-      levels_.push_back(std::move(coarse));
-    }
-  }
-
-  struct Range {
-    float smallest = kFar, largest = 0.0f;
-  };
-  // Over all tiles that touch the square of half-width `radius` around (u, v), all in pixels.
-  Range range(float u, float v, float radius) const {
-    int level = 0;
-    while (level + 1 < static_cast<int>(levels_.size()) && static_cast<float>(4 << level) < 2.0f * radius) ++level;
-    const Level& tiles = levels_[static_cast<std::size_t>(level)];
-    const float per_pixel = 1.0f / static_cast<float>(4 << level);
-    const auto tile = [&](float pixel, int count) {
-      return std::clamp(static_cast<int>(std::floor((pixel + 0.5f) * per_pixel)), 0, count - 1);
-    };
-    const int x0 = tile(u - radius, tiles.width), x1 = tile(u + radius, tiles.width);
-    const int y0 = tile(v - radius, tiles.height), y1 = tile(v + radius, tiles.height);
-    Range range;
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        range.smallest = std::min(range.smallest, tiles.smallest[tiles.at(x, y)]);
-        range.largest = std::max(range.largest, tiles.largest[tiles.at(x, y)]);
-      }
-    }
-    return range;
-  }
-  float largest() const { return levels_.back().largest[0]; }
-
- private:
-  struct Level {
-    int width = 0, height = 0;
-    std::vector<float> smallest, largest;
-    std::size_t at(int x, int y) const {
-      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    }
-    void allocate() {
-      smallest.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kFar);
-      largest.assign(smallest.size(), 0.0f);
-    }
-  };
-
-  static void base_row(const cv::Mat& depth, int row, Level& base) {
-    for (int x = 0; x < base.width; ++x) {
-      const int u1 = std::min(depth.cols, 4 * x + 4), v1 = std::min(depth.rows, 4 * row + 4);
-      float smallest = kFar, largest = 0.0f;
-      int valid = 0, all = 0;
-      for (int v = 4 * row; v < v1; ++v) {
-        const float* line = depth.ptr<float>(v);
-        for (int u = 4 * x; u < u1; ++u) {
-          const bool ok = line[u] > 0.0f;
-          smallest = std::min(smallest, ok ? line[u] : kFar);
-          largest = std::max(largest, ok ? line[u] : 0.0f);
-          valid += ok;
-          ++all;
-        }
-      }
-      base.smallest[base.at(x, row)] = 2 * valid >= all ? smallest : 0.0f;
-      base.largest[base.at(x, row)] = largest;
-    }
-  }
-
-  std::vector<Level> levels_;
-};
 
 class Carving {
  public:

@@ -242,11 +242,7 @@ void GroupedRayIntegrator::integrate(const RgbdFrame& frame, const Intrinsics& i
   WARETWIN_CHECK(frame.depth.cols == intrinsics.width && frame.depth.rows == intrinsics.height && frame.colour.size() == frame.depth.size(),
                  "frame of another size than its intrinsics");
   WARETWIN_CHECK(labels.empty() || labels.size() == pixels, "one label per pixel");
-  if (volume.voxel_m() != config_.voxel_m || volume.config().truncation_voxels != config_.truncation_voxels) {
-    throw Error("tsdf.voxel_m, tsdf.truncation_voxels: " + std::to_string(config_.voxel_m) + ", " +
-                std::to_string(config_.truncation_voxels) + "; expected those of the map, " + std::to_string(volume.voxel_m()) + ", " +
-                std::to_string(volume.config().truncation_voxels));
-  }
+  volume.expect_same_grid(config_);
   integrate_surfaces(group_points(frame, intrinsics, labels, X_WC, config_), X_WC.translation(), config_, volume);
   if (config_.carve) record_free_space(find_free_space(frame, intrinsics, X_WC, config_), volume);
 }

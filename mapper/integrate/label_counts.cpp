@@ -44,6 +44,11 @@ void LabelCounts::add(int voxel, std::int32_t label, std::uint32_t times) {
   }
 }
 
+void LabelCounts::clear(int voxel) {
+  first_[static_cast<std::size_t>(voxel)] = {};
+  if (!further_.empty()) std::erase_if(further_, [voxel](const Entry& e) { return e.voxel == voxel; });
+}
+
 std::uint32_t LabelCounts::count(int voxel, std::int32_t label) const {
   const Slot& slot = first_[static_cast<std::size_t>(voxel)];
   if (slot.count == 0) return 0;

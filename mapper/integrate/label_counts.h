@@ -18,6 +18,9 @@ class LabelCounts {
   // psi(v, label) += times. voxel in [0, 512), label >= 0 (0 = background). Counts stop at 2^32 - 1.
   void add(int voxel, std::int32_t label, std::uint32_t times = 1);
 
+  // Forgets all labels of a voxel.
+  void clear(int voxel);
+
   // psi(v, label); 0 where it was never counted.
   std::uint32_t count(int voxel, std::int32_t label) const;
 

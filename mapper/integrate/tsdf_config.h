@@ -1,11 +1,15 @@
 // Constants of the volume, its integrator and its mesh (section 3.4; Voxblox's defaults where the paper names none).
 #pragma once
 
+#include <string>
+
 #include "core/fields.h"
+#include "mapper/integrate/projection_config.h"
 
 namespace waretwin {
 
 struct TsdfConfig {
+  std::string method = "rays";
   double voxel_m = 0.02;
   double truncation_voxels = 4.0;
   double label_band_voxels = 2.0;
@@ -15,10 +19,13 @@ struct TsdfConfig {
   bool carve = true;
   int clear_frames = 3;
   double mesh_min_weight = 0.05;
+  ProjectionConfig projection;
 
   double truncation_m() const { return truncation_voxels * voxel_m; }
 
   void visit(Fields& f) {
+    f("method", method, "rays: Voxblox's grouped rays (the paper's); projection: voxels looked up in the depth image",
+      {.choices = {"rays", "projection"}});
     f("voxel_m", voxel_m, "edge of a voxel", {.min = 0.002, .max = 1.0});
     f("truncation_voxels", truncation_voxels, "distances are kept up to this many voxels before and behind a surface",
       {.min = 1, .max = 32});
@@ -30,6 +37,7 @@ struct TsdfConfig {
     f("clear_frames", clear_frames,
       "a surface seen through in this many frames, and in twice as many as it was seen in, is taken out; 0: never", {.min = 0, .max = 100});
     f("mesh_min_weight", mesh_min_weight, "voxels of lower weight make no mesh and are unknown", {.min = 0, .max = 1e9});
+    f.group("projection", projection, "integration by projection");
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -37,6 +39,8 @@ const TsdfBlock* TsdfVolume::find_block(const Eigen::Vector3i& index) const {
   return found == positions_.end() ? nullptr : blocks_[found->second].get();
 }
 
+TsdfBlock* TsdfVolume::find_block(const Eigen::Vector3i& index) { return const_cast<TsdfBlock*>(std::as_const(*this).find_block(index)); }
+
 std::size_t TsdfVolume::ensure_block(const Eigen::Vector3i& index) {
   WARETWIN_CHECK(in_range(index), "block outside the volume");
   const auto [entry, fresh] = positions_.try_emplace(key_of(index), blocks_.size());
@@ -66,6 +70,8 @@ bool TsdfVolume::has_surface(const TsdfBlock& block, int offset) const {
   const auto i = static_cast<std::size_t>(offset);
   const TsdfVoxel& voxel = block.surface->voxels[i];
   if (voxel.weight <= 0.0f || voxel.weight < config_.mesh_min_weight) return false;
+  // Voxels that are forgotten need no second judgement.
+  if (forgets_) return true;
   const int free_frames = block.free_frames[i];
   return config_.clear_frames == 0 || free_frames < config_.clear_frames || free_frames <= 2 * voxel.surface_frames;
 }
@@ -98,6 +104,19 @@ VoxelState TsdfVolume::state(const TsdfBlock& block, int offset) const {
 VoxelState TsdfVolume::state(const Eigen::Vector3i& voxel) const {
   const TsdfBlock* block = find_block(block_of(voxel));
   return block ? state(*block, offset_of(voxel)) : VoxelState::unknown;
+}
+
+void TsdfVolume::expect_same_grid(const TsdfConfig& config) const {
+  if (voxel_m() == config.voxel_m && config_.truncation_voxels == config.truncation_voxels) return;
+  throw Error("mapper.integrate: voxel_m and truncation_voxels are " + std::to_string(config.voxel_m) + ", " +
+              std::to_string(config.truncation_voxels) + "; expected the map's own, " + std::to_string(voxel_m()) + ", " +
+              std::to_string(config_.truncation_voxels));
+}
+
+void TsdfVolume::configure(const TsdfConfig& config) {
+  expect_same_grid(config);
+  config_ = config;
+  forgets_ = config.method == "projection" && config.projection.forget;
 }
 
 void TsdfVolume::merge_labels(std::int32_t from, std::int32_t to) {

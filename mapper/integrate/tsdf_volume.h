@@ -48,7 +48,7 @@ class TsdfVolume {
   static constexpr int kVoxels = kSide * kSide * kSide;
   static constexpr int kMaxBlockIndex = (1 << 20) - 1;
 
-  explicit TsdfVolume(const TsdfConfig& config) : config_(config) {}
+  explicit TsdfVolume(const TsdfConfig& config) : config_(config), forgets_(config.method == "projection" && config.projection.forget) {}
 
   const TsdfConfig& config() const { return config_; }
   double voxel_m() const { return config_.voxel_m; }
@@ -66,6 +66,7 @@ class TsdfVolume {
   TsdfBlock& block(std::size_t position) { return *blocks_[position]; }
   const TsdfBlock& block(std::size_t position) const { return *blocks_[position]; }
   const TsdfBlock* find_block(const Eigen::Vector3i& index) const;  // nullptr where nothing was ever seen
+  TsdfBlock* find_block(const Eigen::Vector3i& index);
   // Position of a block, made if need be. Not thread-safe; other blocks stay where they are.
   std::size_t ensure_block(const Eigen::Vector3i& index);
   SurfaceVoxels& ensure_surface(std::size_t position);
@@ -82,6 +83,11 @@ class TsdfVolume {
   bool has_surface(const TsdfBlock& block, int offset) const;
   VoxelState state(const TsdfBlock& block, int offset) const;
 
+  // Throws Error where a configuration's voxel size or truncation are not those of this volume (a map that is resumed with other settings).
+  void expect_same_grid(const TsdfConfig& config) const;
+  // Goes on under another configuration of the same grid; throws Error as above.
+  void configure(const TsdfConfig& config);
+
   // From now on, what was counted as `from` counts as `to` (objects that turned out to be one).
   void merge_labels(std::int32_t from, std::int32_t to);
 
@@ -91,6 +97,7 @@ class TsdfVolume {
 
  private:
   TsdfConfig config_;
+  bool forgets_;  // voxels seen through too often lose their surface at once
   std::vector<std::unique_ptr<TsdfBlock>> blocks_;
   std::unordered_map<std::uint64_t, std::size_t> positions_;
 };

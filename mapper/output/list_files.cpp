@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -34,6 +35,24 @@ void write_occupancy(const std::filesystem::path& file, const OccupancyGrid& gri
   write_file(yaml, "image: " + file.filename().string() + "\nmode: trinary\nresolution: " + formatted(grid.resolution_m, "%.9g") +
                        "\norigin: [" + nine(grid.origin.x()) + ", " + nine(grid.origin.y()) +
                        ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+}
+
+void write_distance_field(const std::filesystem::path& file, const DistanceField& field) {
+  const std::string r = formatted(field.resolution_m, "%.9g");
+  const auto middle = [&](int axis) { return formatted(field.origin[axis] + 0.5 * field.resolution_m, "%.9g"); };
+  std::string bytes =
+      "NRRD0004\n# distances to obstacles in millimetres, less than 0 inside them; -32768 = unknown\ntype: int16\ndimension: 3\n";
+  bytes += "sizes: " + std::to_string(field.width) + " " + std::to_string(field.depth) + " " + std::to_string(field.height) + "\n";
+  bytes += "space dimension: 3\nspace directions: (" + r + ",0,0) (0," + r + ",0) (0,0," + r + ")\n";
+  bytes += "space origin: (" + middle(0) + "," + middle(1) + "," + middle(2) + ")\nspace units: \"m\" \"m\" \"m\"\n";
+  bytes += "endian: little\nencoding: raw\n\n";
+  for (const float distance : field.distances) {
+    const long millimetres = std::isnan(distance) ? -32768 : std::lround(static_cast<double>(distance) * 1000.0);
+    const auto value = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::clamp(millimetres, -32768L, 32767L)));
+    bytes += static_cast<char>(value & 0xff);
+    bytes += static_cast<char>(value >> 8);
+  }
+  write_file(file, bytes);
 }
 
 void write_cuboids(const std::filesystem::path& file, const std::string& frame, const ObjectList& objects) {

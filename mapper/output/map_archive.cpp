@@ -19,7 +19,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "maps are written as the memory holds them");
 
 constexpr char kMagic[] = {'W', 'A', 'R', 'E', 'T', 'W', 'I', 'N'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeader = sizeof kMagic + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::uint32_t kMostText = 1 << 16;
 
@@ -171,6 +171,8 @@ void write_config(Writer& w, const TsdfConfig& c) {
   w.value(static_cast<std::int32_t>(c.clear_frames));
   w.value(static_cast<std::uint8_t>(c.inverse_square_weight));
   w.value(static_cast<std::uint8_t>(c.carve));
+  w.value(static_cast<std::uint8_t>(c.method == "projection"));
+  w.value(static_cast<std::uint8_t>(c.projection.forget));
 }
 
 TsdfConfig read_config(Reader& r) {
@@ -184,6 +186,8 @@ TsdfConfig read_config(Reader& r) {
   c.clear_frames = r.integer("clear_frames", 0, 100);
   c.inverse_square_weight = r.flag();
   c.carve = r.flag();
+  c.method = r.flag() ? "projection" : "rays";
+  c.projection.forget = r.flag();
   return c;
 }
 
@@ -281,8 +285,9 @@ void read_block(Reader& r, TsdfVolume& volume) {
 
 }  // namespace
 
-void save_map(const std::filesystem::path& file, const ObjectList& objects, const TsdfVolume& volume) {
+void save_map(const std::filesystem::path& file, const ObjectList& objects, const TsdfVolume& volume, int frames) {
   Writer w;
+  w.value(static_cast<std::int32_t>(frames));
   write_config(w, volume.config());
   w.value(static_cast<std::uint64_t>(objects.size()));
   for (const MappedObject& object : objects) write_object(w, object);
@@ -313,6 +318,7 @@ LoadedMap load_map(const std::filesystem::path& file) {
 
   Reader r(file, bytes.data() + kHeader, bytes.size() - kHeader);
   LoadedMap map;
+  map.frames = r.integer("frames", 0, std::numeric_limits<std::int32_t>::max());
   map.volume = std::make_unique<TsdfVolume>(read_config(r));
   const auto objects = r.value<std::uint64_t>();
   for (std::uint64_t i = 0; i < objects; ++i) map.objects.push_back(read_object(r));

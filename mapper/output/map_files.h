@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mapper/integrate/distance_field.h"
 #include "mapper/integrate/mesher.h"
 #include "mapper/integrate/occupancy.h"
 #include "mapper/object_list.h"
@@ -29,6 +30,10 @@ void write_map_glb(const std::filesystem::path& file, const SurfaceMesh& mesh, c
 // FILE.pgm and FILE.yaml as ROS map_server reads them (trinary mode): 0 occupied, 254 free, 205 unknown; the picture's first row is
 // the grid's last. `file` is the .pgm.
 void write_occupancy(const std::filesystem::path& file, const OccupancyGrid& grid);
+
+// NRRD (one file, text header, then the cells): millimetres as little-endian int16, x fastest; -32768 where unknown. `space origin` is the
+// centre of the first cell in the world, metres.
+void write_distance_field(const std::filesystem::path& file, const DistanceField& field);
 
 // {"frame":"world","objects":[{"id","class","centre","yaw","size","score"}]}, canonical cuboids, ascending by id.
 void write_cuboids(const std::filesystem::path& file, const std::string& frame, const ObjectList& objects);

@@ -4,14 +4,22 @@
 // two in one run, which drifts less from machine to machine than milliseconds do.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
+#include <type_traits>
 
 #include "core/parallel.h"
+#include "mapper/integrate/depth_pyramid.h"
 #include "mapper/integrate/free_space.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/integrate/mesher.h"
 #include "mapper/integrate/point_groups.h"
+#include "mapper/integrate/projective_integrator.h"
+#include "mapper/integrate/surface_patches.h"
 #include "tests/mapper/integrate_scene.h"
+#ifdef WARETWIN_OPEN3D
+#include "tests/bench/open3d_peer.h"
+#endif
 
 namespace waretwin {
 namespace {
@@ -68,8 +76,20 @@ float back_project(const View& v) {
   return rows.front();
 }
 
+template <class SomeIntegrator>
+TsdfConfig config_of() {
+  TsdfConfig config;
+  config.method = std::is_same_v<SomeIntegrator, ProjectiveIntegrator> ? "projection" : "rays";
+  return config;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
 }
 
 void BackProjection(benchmark::State& state) {
@@ -79,11 +99,13 @@ void BackProjection(benchmark::State& state) {
 }
 BENCHMARK(BackProjection)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
+template <class SomeIntegrator>
 void Integrate(benchmark::State& state) {
-  TsdfConfig config;
+  TsdfConfig config = config_of<SomeIntegrator>();
   config.carve = state.range(0) != 0;
   TsdfVolume volume(config);
-  GroupedRayIntegrator integrator(config);
+  SomeIntegrator integrator(config);
+  std::vector<double> frame_ms;
   double bound = 0.0, own = 0.0, valid = 0.0, depth = 0.0;
   for (const View& v : views()) {
     for (int row = 0; row < camera().height; ++row) {
@@ -99,19 +121,78 @@ void Integrate(benchmark::State& state) {
     const View& v = views()[i++ % views().size()];
     const auto start = std::chrono::steady_clock::now();
     integrator.integrate(v.in.frame, camera(), v.in.labels, v.X_WC, volume);
-    own += seconds_since(start);
+    frame_ms.push_back(1e3 * seconds_since(start));
+    own += 1e-3 * frame_ms.back();
     state.PauseTiming();
     const auto bound_start = std::chrono::steady_clock::now();
     benchmark::DoNotOptimize(back_project(v));
     bound += seconds_since(bound_start);
     state.ResumeTiming();
   }
+  state.counters["median_ms"] = median(frame_ms);
   state.counters["vs_back_projection"] = own / bound;
   state.counters["points"] = valid / static_cast<double>(views().size());
   state.counters["mean_depth_m"] = depth / valid;
   state.counters["map_MB"] = static_cast<double>(volume.bytes()) / 1e6;
 }
-BENCHMARK(Integrate)->ArgName("carve")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(Integrate<GroupedRayIntegrator>)
+    ->ArgName("carve")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+BENCHMARK(Integrate<ProjectiveIntegrator>)
+    ->ArgName("carve")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
+
+// The peer on the same frames in the same run: `ours` and `peer` are median milliseconds, frame by frame in turns.
+#ifdef WARETWIN_OPEN3D
+void AgainstOpen3d(benchmark::State& state) {
+  const TsdfConfig config = config_of<ProjectiveIntegrator>();
+  TsdfVolume volume(config);
+  ProjectiveIntegrator integrator(config);
+  bench::Open3dPeer peer(camera());
+  std::vector<double> ours, theirs;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& v = views()[i++ % views().size()];
+    peer.prepare(v.in.frame, v.X_WC);
+    const auto start = std::chrono::steady_clock::now();
+    peer.integrate();
+    theirs.push_back(1e3 * seconds_since(start));
+    const auto middle = std::chrono::steady_clock::now();
+    integrator.integrate(v.in.frame, camera(), v.in.labels, v.X_WC, volume);
+    const double own = seconds_since(middle);
+    ours.push_back(1e3 * own);
+    state.SetIterationTime(own);
+  }
+  state.counters["ours"] = median(ours);
+  state.counters["peer"] = median(theirs);
+  state.counters["faster"] = median(theirs) / median(ours);
+}
+BENCHMARK(AgainstOpen3d)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(60);
+#endif
+
+void MakePatches(benchmark::State& state) {
+  const TsdfConfig config = config_of<ProjectiveIntegrator>();
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const View& v = views()[i++ % views().size()];
+    benchmark::DoNotOptimize(make_patches(v.in.frame, camera(), v.in.labels, config));
+  }
+}
+BENCHMARK(MakePatches)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+
+void MakeDepthPyramid(benchmark::State& state) {
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(DepthPyramid(views()[i++ % views().size()].in.frame.depth).largest());
+}
+BENCHMARK(MakeDepthPyramid)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 void GroupPoints(benchmark::State& state) {
   const TsdfConfig config;

@@ -19,11 +19,15 @@ TEST(ScoreJson, HoldsTheKeysThatToolsRelyOn) {
   score.digest = "0123456789abcdef";
   score.objects = compare_lists({object(5, "c", 0.4, 0)}, {object(1, "c", 0, 0), object(2, "c", 9, 0)});
   score.trajectory = TrajectoryScore{.pairs = 3, .ate_rmse_m = 0.25};
+  score.surface = SurfaceScore{.vertices = 8, .median_m = 0.001, .share_over_30mm = 0.5, .found = 0.75};
   for (const char* stage : {"simulate", "localise", "detect", "segment", "associate", "integrate", "frame"}) {
     score.timing_ms[stage] = summarise_timing({1, 2, 3});
   }
   const auto json = nlohmann::json::parse(score_json(score));
   EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["surface"]["median_m"], 0.001);
+  EXPECT_EQ(json["surface"]["share_over_30mm"], 0.5);
+  EXPECT_EQ(json["surface"]["found"], 0.75);
   EXPECT_EQ(json["scenario"], "hall");
   EXPECT_EQ(json["profile"], "paper");
   EXPECT_EQ(json["seed"], 7);

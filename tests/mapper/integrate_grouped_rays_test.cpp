@@ -212,7 +212,7 @@ TEST(GroupedRayIntegrator, RefusesAMapOfAnotherVoxelSize) {
     integrator.integrate(in.frame, camera, in.labels, look_at({0, -1, 1}, {0, 1, 1}), volume);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("tsdf.voxel_m"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("voxel_m"), std::string::npos) << e.what();
   }
 }
 
