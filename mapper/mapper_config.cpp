@@ -12,6 +12,7 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     return config;
   }
   if (profile == "best") {
+    config.localise.method = "local_map";
     // An object that comes back into view is the one that was there before, and its box is where its cuboid now appears.
     config.associate.iou2d_mode = "projected";
     config.associate.max_frame_gap = 0;

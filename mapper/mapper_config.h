@@ -7,7 +7,7 @@
 #include "mapper/associate/associate_config.h"
 #include "mapper/detect/detect_config.h"
 #include "mapper/integrate/tsdf_config.h"
-#include "mapper/localise/laser_icp_config.h"
+#include "mapper/localise/localise_config.h"
 #include "mapper/segment/segment_config.h"
 
 namespace waretwin {
@@ -19,7 +19,7 @@ struct MapperConfig {
   std::string detector = "none";  // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
   std::string model;              // folder, .cfg, .weights or .onnx file
   std::string boxes;              // JSON file with boxes by frame stamp
-  LaserIcpConfig localise;
+  LocaliseConfig localise;
   DetectConfig detect;
   SegmentConfig segment;
   AssociateConfig associate;

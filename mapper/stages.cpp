@@ -8,6 +8,7 @@
 #include "mapper/detect/yolo_detector.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/localise/laser_icp_localiser.h"
+#include "mapper/localise/local_map_localiser.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/segment/paper_segmenter.h"
 
@@ -24,7 +25,10 @@ namespace {
 
 std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const StreamInfo& info) {
   const std::string poses = chosen_poses(config, info);
-  if (poses == "laser") return std::make_unique<LaserIcpLocaliser>(config.localise, info);
+  if (poses == "laser") {
+    if (config.localise.method == "local_map") return std::make_unique<LocalMapLocaliser>(config.localise.local_map, info);
+    return std::make_unique<LaserIcpLocaliser>(config.localise.icp, info);
+  }
   if (poses == "recorded") {
     if (!info.has_recorded_poses) throw Error(info.source + ": poses 'recorded' were asked for, but the recording holds none");
     return std::make_unique<RecordedLocaliser>(info);
