@@ -89,7 +89,7 @@ void KeyframeGraph::straighten() {
       Eigen::Matrix3d information = link.covariance.inverse();
       if (link.loop) {
         constexpr double kScale = 9.0;  // squared: three standard deviations
-        information *= 1.0 / (1.0 + e.dot(information * e) / kScale);
+        information *= 1.0 / (1.0 + e.dot(link.expected.inverse() * e) / kScale);
       }
       const std::array<std::pair<int, const Eigen::Matrix3d*>, 2> sides = {{{link.a, &Ja}, {link.b, &Jb}}};
       for (const auto& [i, Ji] : sides) {

@@ -21,6 +21,8 @@ struct KeyframeLink {
   PlanarMotion X_ab;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of (x, y, yaw), in the frame of a
   bool loop = false;                                         // found by seeing a place again: it may be wrong
+  // Of a loop: what it may be off by and still be right, the drift since the place was seen first included; in the frame of a.
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Identity();
 };
 
 // A covariance of (x, y, yaw) with its x and y turned by `yaw`.
@@ -42,8 +44,8 @@ class KeyframeGraph {
   std::vector<double> paths_from(int keyframe) const;
 
   // Moves all keyframes but the first so that the links are met best (Gauss-Newton, sparse Cholesky; Grisetti et al., "A tutorial on
-  // graph-based SLAM", 2010). Loops far beyond their covariance lose weight (Cauchy). Covariances are set anew: those of the most certain
-  // way from the first keyframe, an upper bound of the true ones.
+  // graph-based SLAM", 2010). Loops that stay far beyond what was expected lose weight (Cauchy). Covariances are set anew: those of the
+  // most certain way from the first keyframe, an upper bound of the true ones.
   void straighten();
 
   // The links' poses set to where the keyframes now stand: after they have been laid anew by other means.

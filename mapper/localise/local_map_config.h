@@ -33,6 +33,7 @@ struct MapMatchConfig {
   double max_normal_angle_deg = 40;   // surfaces that are turned more against each other do not correspond
   double min_scale_m = 0.012;         // smallest scale of the robust weights; they follow the residuals' own spread above it
   double min_sigma_m = 0.004;         // smallest standard deviation that residuals are given
+  double independent_share = 0.35;    // beams on one wall err together: so many of them count for one that stands alone
   double min_matched_fraction = 0.4;  // of the scan's points that lie on the map, below which a match is not believed
   double max_residual_m = 0.05;       // root mean square of the matched points, above which a match is not believed
   bool degeneracy = true;
@@ -47,6 +48,7 @@ struct MapMatchConfig {
     f("max_normal_angle_deg", max_normal_angle_deg, "largest angle between corresponding surfaces", {.min = 1, .max = 180});
     f("min_scale_m", min_scale_m, "residuals well below this have full weight", {.min = 0.001, .max = 1});
     f("min_sigma_m", min_sigma_m, "smallest standard deviation of a residual", {.min = 0.0001, .max = 1});
+    f("independent_share", independent_share, "share of the beams that errs on its own, for covariances", {.min = 0.001, .max = 1});
     f("min_matched_fraction", min_matched_fraction, "smallest believable share of matched points", {.min = 0, .max = 1});
     f("max_residual_m", max_residual_m, "largest believable root mean square residual", {.min = 0.001, .max = 10});
     f("degeneracy", degeneracy, "false: what little a scan tells along a corridor is used");

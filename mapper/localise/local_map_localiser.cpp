@@ -96,6 +96,11 @@ void LocalMapLocaliser::predict(const PlanarMotion& step, Stamp duration) {
     along += squared(0.5 * seconds * seconds + 0.2 * distance);
     heading += squared(0.5 * seconds * seconds + 0.2 * turn);
   }
+  // Scale errors add up, they do not average out: after a way D that no scan has checked the error is share * D.
+  along += squared(trust.distance_share) * 2.0 * unchecked_m_ * distance;
+  heading += squared(trust.turn_share) * 2.0 * unchecked_rad_ * turn;
+  unchecked_m_ += distance;
+  unchecked_rad_ += turn;
   const PlanarMotion before = X_SB_;
   X_SB_ = X_SB_ * step;
   P_ = carried_covariance(P_, before.translation, X_SB_.translation);
@@ -178,6 +183,8 @@ bool LocalMapLocaliser::find_again(const std::vector<ScanPoint>& points_B) {
 
 void LocalMapLocaliser::accept(const MapMatch& match, const Eigen::Matrix3d& before) {
   X_SB_ = match.X_SB;
+  unchecked_rad_ = 0.0;
+  if (!match.degenerate) unchecked_m_ = 0.0;
   choose_reference();
   // The map's points are averages of mean_count points each, whose error stays the same from scan to scan.
   constexpr double kWeak = 1e-6;
@@ -241,7 +248,7 @@ void LocalMapLocaliser::add_keyframe(const std::vector<ScanPoint>& points_B) {
     const PlanarMotion& X_SA = graph_.keyframes()[static_cast<std::size_t>(other)].X_SK;
     const Eigen::Matrix3d relative = positive_part(
         P_ - carried_covariance(graph_.keyframes()[static_cast<std::size_t>(other)].covariance, X_SA.translation, X_SB_.translation));
-    graph_.link({other, number, X_SA.inverse() * X_SB_, turned_covariance(relative, -X_SA.yaw) / share, false});
+    graph_.link({other, number, X_SA.inverse() * X_SB_, turned_covariance(relative, -X_SA.yaw) / share});
   };
   // The one match ties the keyframe to the one before it and to the map's reference.
   const int previous = number - 1;
@@ -297,7 +304,8 @@ bool LocalMapLocaliser::close_loop(int newest, const std::vector<double>& paths)
   if (!match.believable || match.degenerate) return false;
   constexpr double kWeak = 1e-6;
   const Eigen::Matrix3d own = (match.information + kWeak * Eigen::Matrix3d::Identity()).inverse();
-  graph_.link({nearest, newest, old.X_SK.inverse() * match.X_SB, turned_covariance(own, -old.X_SK.yaw), true});
+  graph_.link({nearest, newest, old.X_SK.inverse() * match.X_SB, turned_covariance(own, -old.X_SK.yaw), true,
+               turned_covariance(own + between, -old.X_SK.yaw)});
   graph_.straighten();
   ++counts_.loops;
   X_SB_ = graph_.keyframes().back().X_SK;

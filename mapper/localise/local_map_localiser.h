@@ -90,6 +90,7 @@ class LocalMapLocaliser : public Localiser {
   Eigen::Matrix3d map_noise_ = Eigen::Matrix3d::Zero();  // what the map's averaged points leave uncertain
   int reference_ = 0;                                    // keyframe whose covariance stands for the map's
   double doubt_ = 1.0;                                   // factor on the variances of odometry, from how well it foretold the last matches
+  double unchecked_m_ = 0.0, unchecked_rad_ = 0.0;       // driven and turned since a scan last held the vehicle in all directions
   int lost_ = 0;                                         // scans since the last believable match
   std::optional<Stamp> anchor_;                          // the instant of X_SB_; before the first scan: of the first odometry reading
   std::optional<Stamp> newest_scan_;

@@ -101,7 +101,7 @@ MapMatch match_to_map(const LocalMap& map, const std::vector<ScanPoint>& points_
       pair.weight = root * root;
     }
     match.degenerate = config.degeneracy && weakest_direction(pairs, match.loose) < config.degenerate_beams;
-    const double per_variance = 1.0 / (match.sigma_m * match.sigma_m);
+    const double per_variance = config.independent_share / (match.sigma_m * match.sigma_m);
     H_scan.setZero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero(), H_bias = Eigen::Vector3d::Zero();
     double bias_bias = 0.0, bias_g = 0.0;

@@ -5,8 +5,8 @@
 namespace waretwin {
 namespace {
 
-// Neighbouring beams err together where they meet the same unevenness: each match counts for less than its beams.
-constexpr double kIndependent = 0.2;
+// Keyframes see much of the same surfaces, and so do not tell something new each.
+constexpr double kIndependent = 0.5;
 
 }  // namespace
 
