@@ -92,6 +92,8 @@ struct MotionTrustConfig {
   double turn_sd_per_m_deg = 0.7;    // after one metre, growing with the square root
   double turn_sd_per_rad_deg = 1.3;  // after one radian, growing with the square root
   double disbelief = 5.0;            // a match this many standard deviations off is repeated without odometry
+  double doubtful =
+      4.0;  // while its errors are this many times their variance, the last velocity is a second guess, and corridors ask the scan
 
   void visit(Fields& f) {
     f("floor_m", floor_m, "standard deviation of a standstill", {.min = 1e-6, .max = 1});
@@ -101,6 +103,8 @@ struct MotionTrustConfig {
     f("turn_share", turn_share, "relative error of a turn", {.min = 0, .max = 1});
     f("turn_sd_per_m_deg", turn_sd_per_m_deg, "random error of the heading after one metre", {.min = 0, .max = 90});
     f("turn_sd_per_rad_deg", turn_sd_per_rad_deg, "random error of the heading after one radian", {.min = 0, .max = 90});
+    f("doubtful", doubtful, "variance of recent errors over the expected, from which on odometry decides nothing alone",
+      {.min = 1, .max = 1e6});
     f("disbelief", disbelief, "standard deviations between scan and odometry from which on odometry is left out", {.min = 1, .max = 1000});
   }
 };

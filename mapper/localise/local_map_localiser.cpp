@@ -128,12 +128,15 @@ void LocalMapLocaliser::match(const std::vector<ScanPoint>& points_B, const Plan
   const Eigen::Matrix3d before = positive_part(P_ - map_covariance());
   PosePrior prior{X_SB_, before.inverse()};
   PlanarMotion start = X_SB_;
-  constexpr double kDoubtful = 4.0;
-  if (doubt_ > kDoubtful && pose_score(map_, points_B, carried_on, bias_.value(), config_.search) >
-                                pose_score(map_, points_B, X_SB_, bias_.value(), config_.search)) {
+  const bool doubtful = doubt_ > config_.motion.doubtful;
+  // Odometry that has just been wrong does not decide alone: what little the scan tells is better.
+  MapMatchConfig how = config_.match;
+  how.degeneracy = how.degeneracy && !doubtful;
+  if (doubtful && pose_score(map_, points_B, carried_on, bias_.value(), config_.search) >
+                      pose_score(map_, points_B, X_SB_, bias_.value(), config_.search)) {
     start = carried_on;
   }
-  last_match_ = match_to_map(map_, points_B, prior, start, bias_.value(), config_.match);
+  last_match_ = match_to_map(map_, points_B, prior, start, bias_.value(), how);
   const auto off = [&](const MapMatch& m) {
     Eigen::Vector3d e;
     e << m.X_SB.translation - X_SB_.translation, wrap_angle(m.X_SB.yaw - X_SB_.yaw);
@@ -143,7 +146,7 @@ void LocalMapLocaliser::match(const std::vector<ScanPoint>& points_B, const Plan
   if (last_match_.believable && surprise > config_.motion.disbelief * config_.motion.disbelief) {
     constexpr double kForgotten = 1e-4;
     prior.information *= kForgotten;
-    last_match_ = match_to_map(map_, points_B, prior, last_match_.X_SB, bias_.value(), config_.match);
+    last_match_ = match_to_map(map_, points_B, prior, last_match_.X_SB, bias_.value(), how);
     ++counts_.odometry_doubted;
   }
   if (!last_match_.believable && !find_again(points_B)) {

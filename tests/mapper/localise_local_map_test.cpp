@@ -160,7 +160,7 @@ TEST(LocalMapLocaliser, StraightensALoop) {
     }
     return PlanarMotion{corner[0] + r * Eigen::Vector2d(0, -1), 0.0};
   };
-  drive.error = {0.03, 0.01};
+  drive.error = {0.02, 0.01};
   drive.range_max = 6.0;
   drive.scan_s = 0.2;
   drive.distance_scale = 1.02;
