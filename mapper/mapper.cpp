@@ -105,7 +105,7 @@ void Mapper::take(const OdometryReading& reading) {
 void Mapper::take(const LaserScan& scan) {
   Stopwatch watch;
   stages_.localiser->add(scan);
-  if (const auto X_WB = stages_.localiser->current_pose()) map_.trajectory.push_back({scan.stamp, *X_WB});
+  if (const auto X_WB = stages_.localiser->current_pose()) map_.trajectory.push_back({scan.stamp, *X_WB, stages_.localiser->covariance()});
   pending_localise_ms_ += watch.lap();
 }
 

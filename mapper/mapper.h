@@ -19,6 +19,7 @@ namespace waretwin {
 struct TrajectoryPoint {
   Stamp stamp = 0;
   Pose X_WB = Pose::Identity();
+  std::optional<Eigen::Matrix3d> covariance = std::nullopt;  // Localiser::covariance
 };
 
 // What one mapped frame took and found.

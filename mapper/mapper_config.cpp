@@ -12,6 +12,7 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     return config;
   }
   if (profile == "best") {
+    config.localise.method = "local_map";
     config.objects = "evidence";
     config.label_margin_m = 0.015;
     config.integrate.method = "projection";

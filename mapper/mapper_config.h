@@ -8,7 +8,7 @@
 #include "mapper/associate/evidence_config.h"
 #include "mapper/detect/detect_config.h"
 #include "mapper/integrate/tsdf_config.h"
-#include "mapper/localise/laser_icp_config.h"
+#include "mapper/localise/localise_config.h"
 #include "mapper/segment/evidence_rays_config.h"
 #include "mapper/segment/segment_config.h"
 
@@ -23,7 +23,7 @@ struct MapperConfig {
   std::string boxes;               // JSON file with boxes by frame stamp
   std::string objects = "points";  // how objects come about: "points" as published, "evidence" of all rays
   double label_margin_m = -1.0;    // pixels farther outside their object's cuboid get no label; below 0: all get it
-  LaserIcpConfig localise;
+  LocaliseConfig localise;
   DetectConfig detect;
   SegmentConfig segment;
   EvidenceRaysConfig rays;

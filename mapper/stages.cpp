@@ -10,6 +10,7 @@
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/integrate/projective_integrator.h"
 #include "mapper/localise/laser_icp_localiser.h"
+#include "mapper/localise/local_map_localiser.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/segment/evidence_segmenter.h"
 #include "mapper/segment/paper_segmenter.h"
@@ -27,7 +28,10 @@ namespace {
 
 std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const StreamInfo& info) {
   const std::string poses = chosen_poses(config, info);
-  if (poses == "laser") return std::make_unique<LaserIcpLocaliser>(config.localise, info);
+  if (poses == "laser") {
+    if (config.localise.method == "local_map") return std::make_unique<LocalMapLocaliser>(config.localise.local_map, info);
+    return std::make_unique<LaserIcpLocaliser>(config.localise.icp, info);
+  }
   if (poses == "recorded") {
     if (!info.has_recorded_poses) throw Error(info.source + ": poses 'recorded' were asked for, but the recording holds none");
     return std::make_unique<RecordedLocaliser>(info);

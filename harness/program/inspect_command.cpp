@@ -1,9 +1,12 @@
 // waretwin inspect: what is in a file.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <variant>
 
 #include "core/error.h"
@@ -66,6 +69,28 @@ void describe_map(const std::filesystem::path& file) {
   describe_objects(objects);
 }
 
+// What the scans of a recording have in common.
+struct LaserFacts {
+  std::size_t beams = 0, readings = 0, valid = 0;
+  double field_deg = 0.0, range_max = 0.0;
+
+  void add(const LaserScan& scan) {
+    beams = std::max(beams, scan.ranges.size());
+    if (!scan.ranges.empty()) {
+      field_deg = std::max(field_deg, to_degrees(scan.angle_increment) * static_cast<double>(scan.ranges.size() - 1));
+    }
+    range_max = std::max(range_max, scan.range_max);
+    readings += scan.ranges.size();
+    valid += static_cast<std::size_t>(std::count_if(scan.ranges.begin(), scan.ranges.end(), [](float range) { return range > 0.0f; }));
+  }
+  std::string text() const {
+    const double share = readings > 0 ? 100.0 * static_cast<double>(valid) / static_cast<double>(readings) : 0.0;
+    std::ostringstream out;
+    out << beams << " beams over " << field_deg << " deg, up to " << range_max << " m, " << std::round(share) << " % of the readings valid";
+    return out.str();
+  }
+};
+
 void describe_recording(const std::filesystem::path& folder, const RecordingConfig& config) {
   const auto stream = open_recording(folder, config);
   const StreamInfo& info = stream->info();
@@ -79,16 +104,22 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
     std::cout << "    with the depth camera's own images: " << own.width << " x " << own.height << " pixels, fx " << own.fx << " fy "
               << own.fy << "\n";
   }
-  for (const auto& [name, laser] : info.lasers) std::cout << "  laser " << name << ": " << laser.rate_hz << " Hz\n";
   int frames = 0, scans = 0, readings = 0;
   std::optional<Stamp> first;
   Stamp last = 0;
+  LaserFacts beams;
   while (const auto event = stream->next()) {
+    if (const auto* scan = std::get_if<LaserScan>(&*event)) beams.add(*scan);
     last = stamp_of(*event);
     if (!first) first = last;
     frames += std::holds_alternative<RgbdFrame>(*event) ? 1 : 0;
     scans += std::holds_alternative<LaserScan>(*event) ? 1 : 0;
     readings += std::holds_alternative<OdometryReading>(*event) ? 1 : 0;
+  }
+  for (const auto& [name, laser] : info.lasers) {
+    const Eigen::Vector3d p_BL = laser.X_BL.translation();
+    std::cout << "  laser " << name << ": " << laser.rate_hz << " Hz, " << beams.text() << ", at (" << p_BL.x() << ", " << p_BL.y() << ", "
+              << p_BL.z() << ") m on the vehicle, yaw " << to_degrees(yaw_of(laser.X_BL)) << " deg\n";
   }
   std::cout << "  " << frames << " frames, " << scans << " scans, " << readings << " odometry readings in "
             << (first ? to_seconds(last - *first) : 0.0) << " s\n  poses " << (info.has_recorded_poses ? "recorded" : "not recorded")
@@ -133,7 +164,7 @@ int inspect(const InspectOptions& options) {
     return 0;
   }
   if (options.motion_s) throw Error(file, "has no motion; --motion expects a scenario");
-  if (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json")) {
+  if (is_carmen_log(file) || (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json"))) {
     MapConfig config;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });
     if (options.keys) {
@@ -151,7 +182,7 @@ int inspect(const InspectOptions& options) {
   } else if (extension == ".json" || std::filesystem::is_directory(file)) {
     describe_objects(read_object_list(file_or_in_folder(file, "cuboids.json")));
   } else {
-    throw Error(file, "is of an unknown kind; expected .yaml, .glb, .gltf, .waretwin, .json or a recording's folder");
+    throw Error(file, "is of an unknown kind; expected .yaml, .glb, .gltf, .waretwin, .json, .log, .log.gz or a recording's folder");
   }
   return 0;
 }
@@ -160,8 +191,10 @@ int inspect(const InspectOptions& options) {
 
 Command add_inspect_command(CLI::App& program) {
   auto options = std::make_shared<InspectOptions>();
-  CLI::App* command = program.add_subcommand("inspect", "what is in a scenario, a glTF file, a recording or a map");
-  command->add_option("FILE", options->file, "scenario, .glb, .gltf, recording's folder, map.waretwin, cuboids.json or a run's folder")
+  CLI::App* command = program.add_subcommand("inspect", "what is in a scenario, a glTF file, a recording, a laser log or a map");
+  command
+      ->add_option("FILE", options->file,
+                   "scenario, .glb, .gltf, recording's folder, CARMEN log, map.waretwin, cuboids.json or a run's folder")
       ->required();
   command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
   command->add_option("--motion", options->motion_s, "of a scenario: runs what moves for S seconds, without sensors, and says how it went")
@@ -186,7 +219,8 @@ Command add_inspect_command(CLI::App& program) {
   command->footer(
       "Examples:\n  waretwin inspect scenes/agiprobot/scenario.yaml\n  waretwin inspect scenes/agiprobot/scenario.yaml --keys\n"
       "  waretwin inspect scenes/warehouse/scenario.yaml --motion 3600\n"
-      "  waretwin inspect recordings/office --noise --json noise.json\n\n"
+      "  waretwin inspect recordings/office --noise --json noise.json\n"
+      "  waretwin inspect logs/freiburg.log.gz\n\n"
       "`waretwin inspect RECORDING --noise --keys` lists the keys for --set of --noise.");
   return {command, [options] { return inspect(*options); }};
 }

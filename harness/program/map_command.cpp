@@ -48,7 +48,8 @@ int map(const MapOptions& options) {
   RunFolder folder(options.out);
   MapConfig resolved = config;
   folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "recording " + options.recording));
-  if (config.mapper.detector == "none") spdlog::info("no detector was named (--detector): no objects are mapped");
+  if (config.mapper.detector == "none" && !stream->info().cameras.empty())
+    spdlog::info("no detector was named (--detector): no objects are mapped");
   MappingResult result;
   {
     Progress progress("map", options.common.quiet);
@@ -66,6 +67,11 @@ int map(const MapOptions& options) {
     std::cout << object.id << " " << object.class_name << " at " << c.centre.transpose() << " size " << c.size.transpose() << "\n";
   }
   for (const auto& [reason, count] : result.map.rejected) spdlog::info("not segmented: {}, {} times", reason, count);
+  if (result.X_BL) {
+    std::cout << result.map.trajectory.size() << " poses of the laser, digest " << digest_of(result.map) << "\nresults in " << options.out
+              << " (trajectory.tum, topdown.png, report.html)\n";
+    return 0;
+  }
   std::cout << result.map.frames.size() << " of " << result.map.frames_seen << " frames mapped, " << result.map.objects.size()
             << " objects, digest " << digest_of(result.map) << "\nresults in " << options.out << " (report.html, map.glb, cuboids.json)\n";
   return 0;
@@ -75,8 +81,8 @@ int map(const MapOptions& options) {
 
 Command add_map_command(CLI::App& program) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout)");
-  command->add_option("RECORDING", options->recording, "folder of a recording")->required();
+  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout, CARMEN laser log)");
+  command->add_option("RECORDING", options->recording, "folder of a recording, or a CARMEN log (.log, .log.gz)")->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(
       *command, "none (default: no objects); a model's folder or file; yolo with --set mapper.model=FILE; a JSON file with boxes");
@@ -85,7 +91,9 @@ Command add_map_command(CLI::App& program) {
   command->get_option("--config")->excludes("--poses");
   options->common.add_to(*command);
   command->footer(
-      "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n\n"
+      "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n"
+      "  waretwin map logs/freiburg.log.gz --out out/freiburg\n\n"
+      "Of a laser log it is the trajectory alone, as poses of the laser (X_WL). "
       "The ground is the lowest horizontal plane (mapper.segment.planes.ground); in recordings with a recording.yaml it is at height 0.\n"
       "`waretwin inspect RECORDING --keys` lists every key for --set.");
   return {command, [options] { return map(*options); }};

@@ -89,6 +89,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     }
   };
 
+  if (info.cameras.empty() && !info.lasers.empty()) result.X_BL = info.lasers.begin()->second.X_BL;
   const auto start = std::chrono::steady_clock::now();
   std::optional<Stamp> first;
   Stamp last = 0;

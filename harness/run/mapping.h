@@ -27,6 +27,7 @@ struct MappingResult {
   ObjectMap map;
   std::vector<FrameRow> frames;
   std::vector<FramePicture> pictures;  // of a few frames spread over the drive
+  std::optional<Pose> X_BL;            // of a stream with a laser and no camera: the laser on the vehicle, see write_mapping
   double stream_s = 0.0;               // between the first and the last event
   double wall_s = 0.0;
 };

@@ -96,6 +96,20 @@ void RunFolder::clear(const std::string& name) {
   }
 }
 
+std::string covariance_csv(const std::vector<TrajectoryPoint>& trajectory) {
+  std::string csv;
+  for (const TrajectoryPoint& point : trajectory) {
+    if (!point.covariance) continue;
+    const Eigen::Matrix3d& c = *point.covariance;
+    char line[200];
+    std::snprintf(line, sizeof line, "%.9f,%.4e,%.4e,%.4e,%.4e,%.4e,%.4e\n", to_seconds(point.stamp), c(0, 0), c(0, 1), c(0, 2), c(1, 1),
+                  c(1, 2), c(2, 2));
+    if (csv.empty()) csv = "stamp_s,xx_m2,xy_m2,x_yaw_m_rad,yy_m2,y_yaw_m_rad,yaw_yaw_rad2\n";
+    csv += line;
+  }
+  return csv;
+}
+
 std::string timing_csv(const std::vector<FrameRow>& frames) {
   std::string csv = "frame,stamp_s,simulate_ms,localise_ms,detect_ms,segment_ms,associate_ms,integrate_ms,frame_ms,detections,segmented\n";
   for (const FrameRow& row : frames) {
@@ -106,6 +120,17 @@ std::string timing_csv(const std::vector<FrameRow>& frames) {
     csv += line;
   }
   return csv;
+}
+
+// trajectory.tum and, where the localiser knows how far its poses can be trusted, trajectory_covariance.csv. The poses are those of
+// frame F on the vehicle, in the recording's world.
+void write_trajectory(RunFolder& folder, const ObjectMap& map, const Pose& X_BF) {
+  std::vector<StampedPose> trajectory = stamped(map.trajectory);
+  for (StampedPose& point : trajectory) point.X_WB = map.X_RW * point.X_WB * X_BF;
+  folder.write("trajectory.tum", tum_text(trajectory));
+  folder.remove("trajectory_covariance.csv");
+  const std::string covariances = covariance_csv(map.trajectory);
+  if (!covariances.empty()) folder.write("trajectory_covariance.csv", covariances);
 }
 
 std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene) {
@@ -128,9 +153,7 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   write_occupancy(folder.file("occupancy.pgm"), make_occupancy_grid(*map.volume, OccupancyConfig{}));
   write_distance_field(folder.file("esdf.nrrd"), make_distance_field(*map.volume, DistanceFieldConfig{}));
   write_cuboids(folder.file("cuboids.json"), upright ? "world" : "upright", objects);
-  std::vector<StampedPose> trajectory = stamped(map.trajectory);
-  for (StampedPose& point : trajectory) point.X_WB = map.X_RW * point.X_WB;
-  folder.write("trajectory.tum", tum_text(trajectory));
+  write_trajectory(folder, map, Pose::Identity());
   folder.write("timing.csv", timing_csv(mapping.frames));
 
   const double ceiling = picture_ceiling(mesh);
@@ -209,7 +232,29 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   folder.write("score.json", score_json(score));
 }
 
+void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
+  for (const std::string& name : kMapFiles) {
+    if (name != "config.yaml") folder.remove(name);
+  }
+  write_trajectory(folder, mapping.map, *mapping.X_BL);
+  MapScene scene;
+  scene.trajectory = stamped(mapping.map.trajectory);
+  ReportPage page;
+  page.pictures.push_back({"The vehicle's path from above", draw_from_above(scene, 0.0)});
+  folder.write_png("topdown.png", page.pictures.back().image);
+  page.title = "waretwin: path of " + source;
+  page.subtitle = "Profile " + profile + ", digest " + digest_of(mapping.map);
+  page.facts = {std::to_string(mapping.map.trajectory.size()) + " scans, no camera: the trajectory alone, as poses of the laser (X_WL)"};
+  page.files = {"trajectory.tum", "config.yaml"};
+  if (std::filesystem::exists(folder.path() / "trajectory_covariance.csv")) page.files.emplace_back("trajectory_covariance.csv");
+  folder.write("report.html", report_html(page));
+}
+
 void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
+  if (mapping.X_BL) {
+    write_laser_log(folder, mapping, source, profile);
+    return;
+  }
   MapScene scene;
   scene.mapped = listed(mapping.map.objects);
   scene.trajectory = stamped(mapping.map.trajectory);

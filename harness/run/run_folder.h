@@ -40,8 +40,12 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
 // The same with truth, Table 6, report.html, and score.json at the very end.
 void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result);
 
-// What `waretwin map` leaves behind: write_map and report.html.
+// What `waretwin map` leaves behind: write_map and report.html. Of a laser log (no camera) it is the trajectory, as poses of the laser
+// (X_WL), its picture, and report.html.
 void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile);
+
+// A row for each pose that has a covariance: of the vehicle's x, y and yaw in the map's world. Empty where none has one.
+std::string covariance_csv(const std::vector<TrajectoryPoint>& trajectory);
 
 // A row a mapped frame.
 std::string timing_csv(const std::vector<FrameRow>& frames);

@@ -6,6 +6,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "sensors/recordings/carmen_log.h"
 #include "sensors/recordings/contents.h"
 #include "sensors/recordings/recorded_image.h"
 #include "sensors/recordings/text_formats.h"
@@ -214,9 +215,19 @@ void RecordingCalibration::visit(Fields& f) {
   if (!has_direction(up)) f.reject("up", "is not a direction; expected three numbers that are not all 0");
 }
 
+bool is_carmen_log(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return false;
+  const fs::path name = file.extension() == ".gz" ? file.stem() : file;
+  return name.extension() == ".log" || name.extension() == ".clf";
+}
+
 std::unique_ptr<Recording> open_recording(const fs::path& folder, const RecordingConfig& config) {
-  if (!fs::exists(folder)) throw Error(folder, "no such folder");
-  if (!fs::is_directory(folder)) throw Error(folder, "is not a folder; expected a recording's folder");
+  if (!fs::exists(folder)) throw Error(folder, "no such folder or log");
+  if (is_carmen_log(folder)) {
+    CarmenLog log = read_carmen_log(folder);
+    return std::make_unique<FolderRecording>(std::move(log.info), std::move(log.events), 0);
+  }
+  if (!fs::is_directory(folder)) throw Error(folder, "is not a folder; expected a recording's folder, or a CARMEN log (.log, .log.gz)");
   const fs::path laser_file = folder / "laser.txt";
   const fs::path odometry_file = folder / "odometry.txt";
   const fs::path calibration_file = folder / "recording.yaml";
