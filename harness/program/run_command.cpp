@@ -108,7 +108,7 @@ Command add_run_command(CLI::App& program) {
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
   command->add_option("--association", options->association, "map or truth")->capture_default_str()->check(CLI::IsMember({"map", "truth"}));
-  command->add_flag("--budget", options.budget,
+  command->add_flag("--budget", options->budget,
                     "drives once more and maps with the truth in place of each stage in turn: budget.md says what each stage costs");
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->common.add_to(*command);

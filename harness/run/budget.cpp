@@ -54,7 +54,7 @@ SensorEvent share_of(const SensorEvent& event, const std::shared_ptr<RgbdFrame>&
     const FrameTruth& truth = stream.last_frame_truth();
     WARETWIN_CHECK(truth.stamp == f.stamp && truth.sensor == f.sensor, "the mapped frame is the stream's newest");
     f.depth = depth_from_millimetres(depth_to_millimetres(truth.ideal_depth));
-    f.native_depth = {};
+    f.native_depth = cv::Mat();
   };
   return frame;
 }

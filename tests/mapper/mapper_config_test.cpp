@@ -25,7 +25,7 @@ TEST(MapperConfig, AProfileSetsAllThatDoesNotFollowIt) {
   MapperConfig config = MapperConfig::make("paper");
   apply_settings({{"profile", "best"}, {"rate_hz", "5"}}, [&](Fields& f) { config.visit(f); });
   EXPECT_EQ(config.rate_hz, 5.0);
-  EXPECT_EQ(config.associate.iou2d_mode, "projected");
+  EXPECT_EQ(config.objects, "evidence");
 }
 
 TEST(MapperConfig, ReadsBackWhatItWrites) {
