@@ -75,7 +75,8 @@ std::vector<generate::Stop> missing_stops(const generate::GenerateConfig& config
   constexpr double kMargin = 0.01;      // the route's frames come once a second, at times in the middle of a turn
   constexpr double kWorthwhile = 0.01;  // share of the viewable surface that a stop must add
   constexpr std::size_t kMost = 3;      // a conveyor
-  const auto& [sensor, camera] = *scenario.sensors.cameras.begin();
+  const std::string& sensor = scenario.sensors.cameras.begin()->first;
+  const CameraConfig& camera = scenario.sensors.cameras.begin()->second;
   std::vector<generate::Stop> stops;
   for (const TrueObject& object : scene.objects) {
     if (coverage.fraction(object.id) >= config.coverage) continue;
