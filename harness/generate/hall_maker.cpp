@@ -75,7 +75,8 @@ std::vector<generate::Stop> missing_stops(const generate::GenerateConfig& config
   constexpr double kMargin = 0.01;      // the route's frames come once a second, at times in the middle of a turn
   constexpr double kWorthwhile = 0.01;  // share of the viewable surface that a stop must add
   constexpr std::size_t kMost = 3;      // a conveyor
-  const auto& [sensor, camera] = *scenario.sensors.cameras.begin();
+  const std::string& sensor = scenario.sensors.cameras.begin()->first;
+  const CameraConfig& camera = scenario.sensors.cameras.begin()->second;
   std::vector<generate::Stop> stops;
   for (const TrueObject& object : scene.objects) {
     if (coverage.fraction(object.id) >= config.coverage) continue;
@@ -108,20 +109,22 @@ std::string percent(double share) {
 
 }  // namespace
 
-MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folder,
-                   const std::function<void(const std::string&)>& progress) {
+MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folder, const HallMakerHooks& hooks) {
   expect_replaceable(folder);
   const generate::Generator generator(config, SensorsConfig::of_the_paper().cameras.at("camera"));
   StagedFolder staged(folder);
   const fs::path scenario_file = staged.path() / "scenario.yaml";
   double best_worst = 0.0;
   for (int draw = 0; draw < kMostDraws; ++draw) {
+    if (hooks.step) hooks.step();
     std::optional<generate::HallPlan> plan = generator.draw(draw);
     if (!plan) {
-      if (progress) progress("hall " + std::to_string(draw + 1) + " has no room");
+      if (hooks.in_vain) hooks.in_vain("hall " + std::to_string(draw + 1) + " has no room");
       continue;
     }
+    if (hooks.step) hooks.step();
     write_file(staged.path() / "hall.glb", generate::build_glb(*plan));
+    if (hooks.step) hooks.step();
     write_file(scenario_file, generate::scenario_text(*plan, config.seed));
     Scenario scenario = load_scenario(scenario_file);
     const auto scene = std::make_shared<const Scene>(build_scene(scenario));
@@ -130,6 +133,7 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     std::vector<double> shares = coverage_along(scenario, *scene, coverage);
     const auto enough = [&] { return std::all_of(shares.begin(), shares.end(), [&](double share) { return share >= config.coverage; }); };
     for (int again = 0; again < kMostExtensions && !enough(); ++again) {
+      if (hooks.step) hooks.step();
       const std::vector<generate::Stop> stops = missing_stops(config, generator, *plan, draw, scenario, *scene, coverage);
       if (stops.empty()) break;
       generator.add_stops(*plan, draw, stops);
@@ -140,7 +144,7 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     const double worst = shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
     best_worst = std::max(best_worst, worst);
     if (!enough()) {
-      if (progress) progress("hall " + std::to_string(draw + 1) + " shows only " + percent(worst) + " of a conveyor");
+      if (hooks.in_vain) hooks.in_vain("hall " + std::to_string(draw + 1) + " shows only " + percent(worst) + " of a conveyor");
       continue;
     }
 

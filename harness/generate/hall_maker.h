@@ -29,12 +29,16 @@ struct MadeHall {
   int draws = 0;         // halls drawn until one did
 };
 
+struct HallMakerHooks {
+  std::function<void()> step;                       // several times a hall; what it throws ends the making and leaves nothing behind
+  std::function<void(const std::string&)> in_vain;  // after each draw that did not do: why
+};
+
 // Draws a hall, writes it into `folder` as a scenario of its own (scenario.yaml, hall.glb, plan.png), and checks on the written files that
 // the route shows every conveyor: by depth views once a second, as the paper maps. Where it does not, the route looks closer, and after
 // that another hall is drawn; the outcome depends on the configuration alone. The folder appears when the hall is complete and replaces
-// only an earlier generated one. `progress` after each draw that was in vain. Throws Error for a size that has no room for the conveyors,
+// only an earlier generated one. Throws Error for a size that has no room for the conveyors,
 // where no draw shows them all, and for a folder that holds anything else.
-MadeHall make_hall(const generate::GenerateConfig& config, const std::filesystem::path& folder,
-                   const std::function<void(const std::string&)>& progress = {});
+MadeHall make_hall(const generate::GenerateConfig& config, const std::filesystem::path& folder, const HallMakerHooks& hooks = {});
 
 }  // namespace waretwin

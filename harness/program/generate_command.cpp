@@ -59,11 +59,12 @@ int generate_hall(const GenerateOptions& options) {
     const InterruptWatch watch;
     Progress progress("generate", options.common.quiet);
     double draws = 0;
-    hall = make_hall(config, options.out, [&](const std::string& what) {
-      watch.check("nothing was generated");
-      draws += 1;
-      progress.update(draws / (draws + 1), what);
-    });
+    hall = make_hall(config, options.out,
+                     {[&] { watch.check("nothing was generated"); },
+                      [&](const std::string& why) {
+                        draws += 1;
+                        progress.update(draws / (draws + 1), why);
+                      }});
   }
   std::printf("%s: %g x %g x %g m, %zu conveyors, %d other things\n", hall.name.c_str(), hall.length_m, hall.width_m, hall.height_m,
               hall.conveyors.size(), hall.things);

@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "scenes/generate/free_space.h"
 #include "scenes/generate/hall_files.h"
+#include "scenes/generate/station.h"
 #include "scenes/scenario.h"
 #include "tests/scenes/hall_checks.h"
 #include "tests/support/expect_error.h"
@@ -166,6 +167,76 @@ TEST(GeneratedCells, ClutterIsWhatOneAsksFor) {
   bare.clutter = 0;
   crowded.clutter = 1;
   EXPECT_LT(planned(bare).items.size() + 10, planned(crowded).items.size());
+}
+
+TEST(GeneratedWarehouses, HoldLinesThatVehiclesDriveAround) {
+  GenerateConfig config;
+  config.style = "warehouse";
+  int bolted = 0;
+  std::set<std::string> kinds;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE(seed);
+    config.seed = seed;
+    const HallPlan plan = planned(config);
+    EXPECT_GE(plan.conveyors.size(), 6u);
+    EXPECT_LE(plan.conveyors.size(), 10u);
+    EXPECT_GT(plan.length * plan.width, 150.0);
+    EXPECT_GT(plan.items.size(), 10u);
+    const LoadedHall hall = load(plan, seed);
+    ASSERT_EQ(hall.scene.objects.size(), plan.conveyors.size());
+    EXPECT_LT(hall.scene.triangle_count(), 1'500'000u);
+    const std::set<std::string> met = test::on_the_route(hall.scene, hall.scenario.robot, 0.05);
+    EXPECT_TRUE(met.empty()) << test::joined(met);
+    for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
+      kinds.insert(plan.conveyors[i].kind());
+      for (std::size_t k = i + 1; k < plan.conveyors.size(); ++k) {
+        const auto* a = std::get_if<builder::FloorConveyor>(&plan.conveyors[i].part);
+        const auto* b = std::get_if<builder::FloorConveyor>(&plan.conveyors[k].part);
+        if (!a || !b) continue;
+        const double between = gap(plan.conveyors[i].solids()[0], plan.conveyors[k].solids()[0]);
+        EXPECT_GT(between, 0.005) << plan.conveyors[i].name << ", " << plan.conveyors[k].name;
+        bolted += between < 0.04 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(bolted, 2);
+  EXPECT_GE(kinds.size(), 4u);
+}
+
+// Of a line's curves the real triangles count: the boxes that stand for them on paper reach a little farther.
+TEST(GeneratedWarehouses, LinesDoNotCutIntoThemselves) {
+  Dice dice(7, "test lines");
+  const ConveyorFinishes finishes{{"green_paint"}, {"rubber_belt"}, {"roller_steel"}};
+  int curves = 0;
+  for (int i = 0; i < 24; ++i) {
+    SCOPED_TRACE(i);
+    const Station line = draw_line(dice, finishes, 4);
+    ASSERT_EQ(line.conveyors.size(), 4u);
+    for (std::size_t k = 1; k < line.conveyors.size(); ++k) {
+      curves += std::holds_alternative<builder::CurveConveyor>(line.conveyors[k].part) ? 1 : 0;
+      // Top patches of one lie outside the other, and the nearest two within a few centimetres.
+      double nearest = 1e9;
+      for (const SurfacePatch& a : line.conveyors[k - 1].surface()) {
+        for (const SurfacePatch& b : line.conveyors[k].surface()) {
+          if (a.normal.z() > 0.9 && b.normal.z() > 0.9) nearest = std::min(nearest, (a.p_W - b.p_W).head<2>().norm());
+        }
+      }
+      EXPECT_LT(nearest, 0.15);
+      EXPECT_GT(nearest, 0.03);
+    }
+  }
+  EXPECT_GE(curves, 5);
+}
+
+TEST(GeneratedFlats, AreBareAndSmall) {
+  GenerateConfig config;
+  config.style = "flat";
+  const HallPlan plan = planned(config);
+  EXPECT_GE(plan.conveyors.size(), 2u);
+  EXPECT_LE(plan.conveyors.size(), 3u);
+  EXPECT_LT(build_glb(plan).size(), 600'000u);
+  for (const PlannedConveyor& c : plan.conveyors) EXPECT_TRUE(c.kind().starts_with("table-top")) << c.kind();
+  for (const PlannedWall& wall : plan.walls) EXPECT_TRUE(wall.openings.empty());
 }
 
 // Footprints against points of a fine grid.

@@ -46,5 +46,26 @@ TEST(SurfaceCoverage, FramesAddTheSidesTheySee) {
   EXPECT_THROW(coverage.add_frame("other", Pose::Identity()), Error);
 }
 
+TEST(SurfaceCoverage, SaysWhatAFrameWouldAdd) {
+  const CameraConfig camera;
+  SurfaceCoverage coverage(cube_in_hall(), {{"camera", camera}}, RobotConfig());
+  const auto pose = [&](double x, double y, double yaw) { return make_upright_pose(x, y, 0, to_radians(yaw)) * camera.mount.X_BC(); };
+  EXPECT_EQ(coverage.would_add("camera", pose(-0.9, 0, 180), 1), 0.0) << "looks away";
+  const double first = coverage.would_add("camera", pose(-0.9, 0, 0), 1);
+  EXPECT_EQ(coverage.fraction(1), 0.0) << "nothing is added by asking";
+  coverage.add_frame("camera", pose(-0.9, 0, 0));
+  EXPECT_DOUBLE_EQ(coverage.fraction(1), first);
+  EXPECT_EQ(coverage.would_add("camera", pose(-0.9, 0, 0), 1), 0.0) << "seen already";
+  const double second = coverage.would_add("camera", pose(0.9, 0, 180), 1);
+  EXPECT_NEAR(second, 0.2, 0.02) << "one more side";
+  coverage.add_frame("camera", pose(0.9, 0, 180));
+  EXPECT_NEAR(coverage.fraction(1), first + second, 1e-12);
+  coverage.forget_frames();
+  EXPECT_EQ(coverage.fraction(1), 0.0);
+  EXPECT_DOUBLE_EQ(coverage.would_add("camera", pose(-0.9, 0, 0), 1), first);
+  EXPECT_THROW(coverage.would_add("other", Pose::Identity(), 1), Error);
+  EXPECT_THROW(coverage.would_add("camera", Pose::Identity(), 2), Error);
+}
+
 }  // namespace
 }  // namespace waretwin
