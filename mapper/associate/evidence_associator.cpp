@@ -151,10 +151,10 @@ void EvidenceAssociator::update(MappedObject& mapped, Track& track, const Segmen
   mapped.box = object.detection.box;
   ++mapped.observations;
   if (object.support_W && std::isfinite(*object.support_W)) track.supports.push_back(static_cast<float>(*object.support_W));
-  // Once the cuboid stands, clutter in the box need not widen the grid.
-  Eigen::AlignedBox3d candidates = bulk_of(object.rays);
-  track.grid.add(object.rays_from_W, object.rays, candidates);
-  if (mapped.observations <= config_.shape_every || mapped.observations - track.shaped_at >= config_.shape_every) shape(mapped, track);
+  track.grid.add(object.rays_from_W, object.rays, bulk_of(object.rays));
+  // The more is known, the less another frame changes.
+  const int next = track.shaped_at + std::max(config_.shape_every, track.shaped_at / 5);
+  if (mapped.observations <= config_.shape_every || mapped.observations >= next) shape(mapped, track);
 }
 
 void EvidenceAssociator::shape(MappedObject& mapped, Track& track) const {

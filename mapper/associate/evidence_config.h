@@ -23,7 +23,7 @@ struct EvidenceConfig {
   double top_area_share = 0.04;     // ... and at least this share of it
   double foot_gap_m = 0.08;         // an object whose lowest cell is nearer to its support stands on it
   double heading_step_deg = 0.1;
-  int shape_every = 5;  // the cuboid is searched again after so many more observations
+  int shape_every = 5;  // the cuboid is searched again after so many more observations, or a fifth of those it has
   // Association
   double min_overlap = 0.3;  // share of a detection's points inside a mapped cuboid, grown by overlap_margin_m
   double overlap_margin_m = 0.05;
@@ -50,7 +50,8 @@ struct EvidenceConfig {
     f("top_area_share", top_area_share, "and at least this share of it", {.min = 0, .max = 1});
     f("foot_gap_m", foot_gap_m, "an object whose lowest cell is nearer to its support stands on it", {.min = 0, .max = 1});
     f("heading_step_deg", heading_step_deg, "finest step of the heading search", {.min = 0.01, .max = 5});
-    f("shape_every", shape_every, "the cuboid is searched again after so many more observations", {.min = 1, .max = 1000});
+    f("shape_every", shape_every, "the cuboid is searched again after so many more observations, or a fifth of those it has",
+      {.min = 1, .max = 1000});
     f("min_overlap", min_overlap, "share of a detection's points inside a mapped cuboid for both to be one; -1: always",
       {.min = -1, .max = 1});
     f("overlap_margin_m", overlap_margin_m, "the cuboid grows by this for that question", {.min = 0, .max = 1});

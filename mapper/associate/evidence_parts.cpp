@@ -12,8 +12,9 @@ namespace {
 // The cells of a grid, several at a time: as large as the gaps that are bridged.
 struct CoarseCell {
   double object = 0.0, other = 0.0;  // hits, of the object's cells
-  double hits = 0.0, passed = 0.0;   // of all cells
+  int cells = 0, free = 0;           // of the grid in it; those that more rays pass than end in
   int part = 0;                      // 0: no cell of the object
+  bool is_free() const { return 2 * free > cells; }
 };
 
 class CoarseGrid {
@@ -29,8 +30,8 @@ class CoarseGrid {
         for (int x = 0; x < grid.size().x(); ++x, ++i) {
           const EvidenceCell& cell = grid.cell(x, y, z);
           CoarseCell& coarse = at(of(x, y, z));
-          coarse.hits += cell.hits();
-          coarse.passed += cell.passed;
+          ++coarse.cells;
+          if (cell.passed > cell.hits()) ++coarse.free;
           if (!mine[i]) continue;
           coarse.object += cell.object;
           coarse.other += cell.other;
@@ -107,9 +108,8 @@ bool untold(CoarseGrid& coarse, const Gap& gap) {
   int passed = 0, between = 0;
   for (int i = 1; i < steps; ++i) {
     const Eigen::Vector3d p = gap.from.cast<double>() + (gap.to - gap.from).cast<double>() * (static_cast<double>(i) / steps);
-    const CoarseCell& cell = coarse.at(p.array().round().matrix().cast<int>());
     ++between;
-    if (cell.passed > cell.hits) ++passed;
+    if (coarse.at(p.array().round().matrix().cast<int>()).is_free()) ++passed;
   }
   return 4 * passed <= between;
 }
