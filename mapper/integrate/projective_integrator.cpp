@@ -33,6 +33,8 @@ struct Candidate {
 struct Part {
   std::array<float, kPart> x, y, z;  // of each voxel's centre: camera's frame, metres
   std::array<std::int32_t, kPart> patch, around;
+  std::array<float, kPart> distance;         // to the patch's plane
+  std::array<std::uint8_t, kPart> on_plane;  // 1: near enough to it to be updated
 };
 
 // Bounds of a box in the picture and in depth.
@@ -106,6 +108,7 @@ class Projecting {
     truncation_ = static_cast<float>(config.truncation_m());
     behind_ = static_cast<float>(std::min(config.projection.behind_voxels, config.truncation_voxels) * config.voxel_m);
     along_ = static_cast<float>(config.projection.along_truncations * config.truncation_m());
+    along_behind_ = static_cast<float>(config.projection.along_truncations) * behind_;
     label_band_ = static_cast<float>(config.label_band_voxels * config.voxel_m);
     max_weight_ = static_cast<float>(config.max_weight);
     max_depth_ = static_cast<float>(config.max_depth_m);
@@ -191,7 +194,7 @@ class Projecting {
     if (e.u1 < -0.5f || e.v1 < -0.5f || e.u0 > projection_.right - 0.5f || e.v0 > projection_.bottom - 0.5f) return Seen::nothing;
     const DepthPyramid::Range range = pyramid_.range(e.u0, e.v0, e.u1, e.v1);
     // Behind all that is seen here.
-    if (range.largest + along_ < e.near) return Seen::nothing;
+    if (range.largest + along_behind_ < e.near) return Seen::nothing;
     const bool inside = e.u0 >= 0.0f && e.v0 >= 0.0f && e.u1 <= projection_.right - 1.0f && e.v1 <= projection_.bottom - 1.0f;
     // All before it, so far that no plane comes near either: planes lie within their pixels' depths, but for a little.
     if (inside && range.smallest > e.far + along_ + voxel_ && e.far <= max_depth_) return config_.carve ? Seen::free : Seen::nothing;
@@ -216,18 +219,16 @@ class Projecting {
     projection.around_width = around.width;
     Part part;
     project(projection, start, per_voxel_, part);
+    measure(part);
     bool changed = false;
     for (std::size_t i = 0; i < kPart; ++i) {
-      const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(part.patch[i])];
-      const float ahead = patch.nx * part.x[i] + patch.ny * part.y[i] + patch.nz * part.z[i];
-      const float distance = patch.h - ahead;
-      // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
-      if ((patch.weight > 0.0f) & (distance >= -behind_) & (distance <= truncation_) & (part.z[i] * std::abs(distance) <= along_ * ahead)) {
+      if (part.on_plane[i] != 0) {
         if (!surface) {
           fresh = std::make_unique<SurfaceVoxels>();
           surface = fresh.get();
         }
-        changed |= average(voxel_of(x, y, z, i), distance, patch, *surface, free_frames);
+        const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(part.patch[i])];
+        changed |= average(voxel_of(x, y, z, i), part.distance[i], patch, *surface, free_frames);
       } else if (config_.carve && part.patch[i] != projection.outside && part.z[i] <= max_depth_ &&
                  around.smallest[part.around[i]] > part.z[i] + truncation_) {
         see_through(voxel_of(x, y, z, i), surface, free_frames);
@@ -235,6 +236,23 @@ class Projecting {
       }
     }
     return changed;
+  }
+
+  void measure(Part& part) const {
+    std::array<float, kPart> ahead, h;
+    for (std::size_t i = 0; i < kPart; ++i) {
+      const PatchPlane& plane = image_.planes[static_cast<std::size_t>(part.patch[i])];
+      ahead[i] = plane.nx * part.x[i] + plane.ny * part.y[i] + plane.nz * part.z[i];
+      h[i] = plane.h;
+    }
+    const float behind = behind_, truncation = truncation_, along = along_, along_behind = along_behind_;
+    for (std::size_t i = 0; i < kPart; ++i) {
+      const float d = h[i] - ahead[i];
+      part.distance[i] = d;
+      // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
+      part.on_plane[i] = static_cast<std::uint8_t>(when(d >= -behind) * when(d <= truncation) * when(part.z[i] * d <= along * ahead[i]) *
+                                                   when(-part.z[i] * d <= along_behind * ahead[i]));
+    }
   }
 
   bool average(std::size_t i, float distance, const SurfacePatch& patch, SurfaceVoxels& surface,
@@ -281,7 +299,8 @@ class Projecting {
   Pose X_CW_;
   Projection projection_{};
   Eigen::Matrix3f per_voxel_;  // step of one voxel along each axis of the world, in the camera's frame
-  float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f, max_depth_ = 0.0f;
+  float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, along_behind_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f,
+        max_depth_ = 0.0f;
   float focal_ = 0.0f;
   int memory_ = 0, forget_after_ = 0;
 };

@@ -165,7 +165,7 @@ class ReferenceMap {
   void integrate(const PatchImage& image, const Intrinsics& camera, const Pose& X_WC) {
     const Pose X_CW = X_WC.inverse();
     const double voxel = config_.voxel_m, truncation = config_.truncation_m(), behind = config_.projection.behind_voxels * voxel;
-    const double along = config_.projection.along_truncations * truncation, band = config_.label_band_voxels * voxel;
+    const double band = config_.label_band_voxels * voxel;
     const int n = static_cast<int>(std::ceil(2.8 / voxel));
     for (int x = -n; x < n; ++x) {
       for (int y = -n; y < n; ++y) {
@@ -184,9 +184,10 @@ class ReferenceMap {
           }
           const double ahead = Eigen::Vector3d(patch.nx, patch.ny, patch.nz).dot(p), d = patch.h - ahead;
           for (const double limit : {-behind, truncation, band, -band, -voxel}) borderline = borderline || std::abs(d - limit) < 1e-5;
-          borderline = borderline || std::abs(p.z() * std::abs(d) - along * ahead) < 1e-4;
+          const double reach = config_.projection.along_truncations * (d > 0.0 ? truncation : behind);
+          borderline = borderline || std::abs(p.z() * std::abs(d) - reach * ahead) < 1e-4;
           if (borderline) voxels[{x, y, z}].borderline = true;
-          if (d < -behind || d > truncation || p.z() * std::abs(d) > along * ahead) continue;
+          if (d < -behind || d > truncation || p.z() * std::abs(d) > reach * ahead) continue;
           ReferenceVoxel& v = voxels[{x, y, z}];
           if (std::abs(d) <= band) ++v.labels[patch.label];
           double w = patch.weight;
