@@ -91,6 +91,37 @@ void project_layer(const Projection& projection, const Eigen::Vector3f& s, const
   }
 }
 
+// Corners of a block's eighths in the picture, x fastest: (0, 4, 8) voxels along each axis, and a few more to make whole loops.
+struct Lattice {
+  static constexpr int kPoints = 27, kPadded = 32;
+  std::array<float, kPadded> x{}, y{}, z{};  // before: from the block's corner, camera's frame
+  std::array<float, kPadded> u{}, v{}, depth{};
+
+  static int at(int i, int j, int k) { return i + 3 * (j + 3 * k); }
+};
+
+void project_lattice(const Projection& projection, const Eigen::Vector3f& corner, Lattice& lattice) {
+  const Projection c = projection;
+  const float x0 = corner.x(), y0 = corner.y(), z0 = corner.z();
+  for (std::size_t i = 0; i < Lattice::kPadded; ++i) {
+    const float x = x0 + lattice.x[i], y = y0 + lattice.y[i], z = z0 + lattice.z[i];
+    const float inverse = 1.0f / (z > c.nearest ? z : c.nearest);
+    lattice.u[i] = c.fx * x * inverse + c.cx;
+    lattice.v[i] = c.fy * y * inverse + c.cy;
+    lattice.depth[i] = z;
+  }
+}
+
+// Of the box of `span` eighths (1 or 2) along each axis whose lowest corner is lattice point (i, j, k).
+Extent extent_of(const Lattice& lattice, int i, int j, int k, int span) {
+  Extent extent;
+  for (int n = 0; n < 8; ++n) {
+    const auto at = static_cast<std::size_t>(Lattice::at(i + span * (n & 1), j + span * (n >> 1 & 1), k + span * (n >> 2)));
+    extent.add(lattice.u[at], lattice.v[at], lattice.depth[at]);
+  }
+  return extent;
+}
+
 // `start`: centre of the part's first voxel; steps of one voxel along the axes of the world.
 void project(const Projection& projection, const Eigen::Vector3f& start, const Eigen::Matrix3f& step, Part& out) {
   for (int layer = 0; layer < 4; ++layer) {
@@ -129,16 +160,24 @@ class Projecting {
                    0.5f * voxel_,
                    max_depth_ + truncation_,
                    static_cast<std::int32_t>(image.patches.size()) - 1};
+    for (int i = 0; i < Lattice::kPoints; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Eigen::Vector3f p =
+          per_voxel_ * (4.0f * Eigen::Vector3f(static_cast<float>(i % 3), static_cast<float>(i / 3 % 3), static_cast<float>(i / 9)));
+      lattice_.x[k] = p.x();
+      lattice_.y[k] = p.y();
+      lattice_.z[k] = p.z();
+    }
   }
 
   // Blocks of one column that the frame says something about.
   void find(const Eigen::Vector3i& first, int count, std::vector<Candidate>& found) const {
+    Lattice lattice = lattice_;
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3i index = first + Eigen::Vector3i(0, 0, i);
       const Eigen::Vector3f corner = corner_of(index);
-      Extent extent;
-      for (int k = 0; k < 8; ++k) add_corner(corner, 8 * (k & 1), 8 * (k >> 1 & 1), 8 * (k >> 2), extent);
-      const Seen seen = judge(extent);
+      project_lattice(projection_, corner, lattice);
+      const Seen seen = judge(extent_of(lattice, 0, 0, 0, 2));
       if (seen != Seen::nothing) found.push_back({index, seen});
     }
   }
@@ -157,11 +196,12 @@ class Projecting {
       return true;
     }
     const Eigen::Vector3f corner = corner_of(candidate.index);
+    Lattice lattice = lattice_;
+    project_lattice(projection_, corner, lattice);
     bool changed = false;
     for (int part = 0; part < 8; ++part) {
       const int x = 4 * (part & 1), y = 4 * (part >> 1 & 1), z = 4 * (part >> 2);
-      Extent extent;
-      for (int k = 0; k < 8; ++k) add_corner(corner, x + 4 * (k & 1), y + 4 * (k >> 1 & 1), z + 4 * (k >> 2), extent);
+      const Extent extent = extent_of(lattice, x / 4, y / 4, z / 4, 1);
       const Seen seen = judge(extent);
       if (seen == Seen::free) {
         for (std::size_t i = 0; i < kPart; ++i) see_through(voxel_of(x, y, z, i), surface, free_frames);
@@ -178,14 +218,6 @@ class Projecting {
   // Lowest corner of a block in the camera's frame.
   Eigen::Vector3f corner_of(const Eigen::Vector3i& index) const {
     return (X_CW_ * (index.cast<double>() * (8.0 * config_.voxel_m))).cast<float>();
-  }
-
-  // A point (x, y, z) voxels from the corner.
-  void add_corner(const Eigen::Vector3f& corner, int x, int y, int z, Extent& extent) const {
-    const Eigen::Vector3f p = corner + per_voxel_.col(0) * static_cast<float>(x) + per_voxel_.col(1) * static_cast<float>(y) +
-                              per_voxel_.col(2) * static_cast<float>(z);
-    const float inverse = 1.0f / std::max(p.z(), projection_.nearest);
-    extent.add(projection_.fx * p.x() * inverse + projection_.cx, projection_.fy * p.y() * inverse + projection_.cy, p.z());
   }
 
   Seen judge(const Extent& e) const {
@@ -298,6 +330,7 @@ class Projecting {
   const TsdfConfig& config_;
   Pose X_CW_;
   Projection projection_{};
+  Lattice lattice_;
   Eigen::Matrix3f per_voxel_;  // step of one voxel along each axis of the world, in the camera's frame
   float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, along_behind_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f,
         max_depth_ = 0.0f;
