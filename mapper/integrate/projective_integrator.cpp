@@ -295,6 +295,9 @@ class Projecting {
     if (std::abs(distance) <= label_band_) surface.labels.add(static_cast<int>(i), patch.label);
     if (weight <= 0.0f) return false;
     TsdfVoxel& voxel = surface.voxels[i];
+    // What the voxel holds for a surface, this frame sees well before one.
+    const bool against = forgets() && distance > 2.0f * voxel_ && voxel.weight > 0.0f && voxel.distance <= voxel_;
+    if (against) see_through(i, &surface, free_frames);
     const float sum = voxel.weight + weight;
     const float share = weight / sum;
     voxel.distance += (distance - voxel.distance) * share;
@@ -307,17 +310,19 @@ class Projecting {
     blend(voxel.colour[1], patch.green);
     blend(voxel.colour[2], patch.blue);
     voxel.weight = std::min(sum, max_weight_);
-    if (distance >= -voxel_) {
+    if (distance >= -voxel_ && !against) {
       if (voxel.surface_frames < memory_) ++voxel.surface_frames;
       free_frames[i] = static_cast<std::uint8_t>(std::max(0, free_frames[i] - 2));
     }
     return true;
   }
 
+  bool forgets() const { return config_.projection.forget && forget_after_ > 0; }
+
   void see_through(std::size_t i, SurfaceVoxels* surface, std::array<std::uint8_t, 512>& free_frames) const {
     const int frames = std::min(free_frames[i] + 1, 4 * memory_);
     free_frames[i] = static_cast<std::uint8_t>(frames);
-    if (!surface || !config_.projection.forget || forget_after_ == 0 || frames < forget_after_) return;
+    if (!surface || !forgets() || frames < forget_after_) return;
     TsdfVoxel& voxel = surface->voxels[i];
     if (voxel.weight <= 0.0f || voxel.distance > voxel_ || frames <= 2 * std::min<int>(voxel.surface_frames, memory_)) return;
     voxel = TsdfVoxel{};
