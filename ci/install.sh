@@ -2,6 +2,7 @@
 # Installs what a build needs on Debian 12. Does nothing, quickly, where all is there. Needs root or sudo.
 #   ci/install.sh             what the build and the tests need
 #   ci/install.sh --tools     also clang-format and clang-tidy
+#   ci/install.sh --peers     also what benchmarks are compared with (Open3D)
 set -euo pipefail
 
 packages=(
@@ -13,7 +14,8 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --tools) packages+=(clang-format clang-tidy) ;;
-    *) echo "install.sh: unknown option '$argument'; expected --tools" >&2; exit 2 ;;
+    --peers) packages+=(libopen3d-dev) ;;
+    *) echo "install.sh: unknown option '$argument'; expected --tools or --peers" >&2; exit 2 ;;
   esac
 done
 

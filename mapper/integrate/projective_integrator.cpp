@@ -33,6 +33,8 @@ struct Candidate {
 struct Part {
   std::array<float, kPart> x, y, z;  // of each voxel's centre: camera's frame, metres
   std::array<std::int32_t, kPart> patch, around;
+  std::array<float, kPart> distance;         // to the patch's plane
+  std::array<std::uint8_t, kPart> on_plane;  // 1: near enough to it to be updated
 };
 
 // Bounds of a box in the picture and in depth.
@@ -89,6 +91,37 @@ void project_layer(const Projection& projection, const Eigen::Vector3f& s, const
   }
 }
 
+// Corners of a block's eighths in the picture, x fastest: (0, 4, 8) voxels along each axis, and a few more to make whole loops.
+struct Lattice {
+  static constexpr int kPoints = 27, kPadded = 32;
+  std::array<float, kPadded> x{}, y{}, z{};  // before: from the block's corner, camera's frame
+  std::array<float, kPadded> u{}, v{}, depth{};
+
+  static int at(int i, int j, int k) { return i + 3 * (j + 3 * k); }
+};
+
+void project_lattice(const Projection& projection, const Eigen::Vector3f& corner, Lattice& lattice) {
+  const Projection c = projection;
+  const float x0 = corner.x(), y0 = corner.y(), z0 = corner.z();
+  for (std::size_t i = 0; i < Lattice::kPadded; ++i) {
+    const float x = x0 + lattice.x[i], y = y0 + lattice.y[i], z = z0 + lattice.z[i];
+    const float inverse = 1.0f / (z > c.nearest ? z : c.nearest);
+    lattice.u[i] = c.fx * x * inverse + c.cx;
+    lattice.v[i] = c.fy * y * inverse + c.cy;
+    lattice.depth[i] = z;
+  }
+}
+
+// Of the box of `span` eighths (1 or 2) along each axis whose lowest corner is lattice point (i, j, k).
+Extent extent_of(const Lattice& lattice, int i, int j, int k, int span) {
+  Extent extent;
+  for (int n = 0; n < 8; ++n) {
+    const auto at = static_cast<std::size_t>(Lattice::at(i + span * (n & 1), j + span * (n >> 1 & 1), k + span * (n >> 2)));
+    extent.add(lattice.u[at], lattice.v[at], lattice.depth[at]);
+  }
+  return extent;
+}
+
 // `start`: centre of the part's first voxel; steps of one voxel along the axes of the world.
 void project(const Projection& projection, const Eigen::Vector3f& start, const Eigen::Matrix3f& step, Part& out) {
   for (int layer = 0; layer < 4; ++layer) {
@@ -106,6 +139,7 @@ class Projecting {
     truncation_ = static_cast<float>(config.truncation_m());
     behind_ = static_cast<float>(std::min(config.projection.behind_voxels, config.truncation_voxels) * config.voxel_m);
     along_ = static_cast<float>(config.projection.along_truncations * config.truncation_m());
+    along_behind_ = static_cast<float>(config.projection.along_truncations) * behind_;
     label_band_ = static_cast<float>(config.label_band_voxels * config.voxel_m);
     max_weight_ = static_cast<float>(config.max_weight);
     max_depth_ = static_cast<float>(config.max_depth_m);
@@ -126,16 +160,24 @@ class Projecting {
                    0.5f * voxel_,
                    max_depth_ + truncation_,
                    static_cast<std::int32_t>(image.patches.size()) - 1};
+    for (int i = 0; i < Lattice::kPoints; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Eigen::Vector3f p =
+          per_voxel_ * (4.0f * Eigen::Vector3f(static_cast<float>(i % 3), static_cast<float>(i / 3 % 3), static_cast<float>(i / 9)));
+      lattice_.x[k] = p.x();
+      lattice_.y[k] = p.y();
+      lattice_.z[k] = p.z();
+    }
   }
 
   // Blocks of one column that the frame says something about.
   void find(const Eigen::Vector3i& first, int count, std::vector<Candidate>& found) const {
+    Lattice lattice = lattice_;
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3i index = first + Eigen::Vector3i(0, 0, i);
       const Eigen::Vector3f corner = corner_of(index);
-      Extent extent;
-      for (int k = 0; k < 8; ++k) add_corner(corner, 8 * (k & 1), 8 * (k >> 1 & 1), 8 * (k >> 2), extent);
-      const Seen seen = judge(extent);
+      project_lattice(projection_, corner, lattice);
+      const Seen seen = judge(extent_of(lattice, 0, 0, 0, 2));
       if (seen != Seen::nothing) found.push_back({index, seen});
     }
   }
@@ -154,11 +196,12 @@ class Projecting {
       return true;
     }
     const Eigen::Vector3f corner = corner_of(candidate.index);
+    Lattice lattice = lattice_;
+    project_lattice(projection_, corner, lattice);
     bool changed = false;
     for (int part = 0; part < 8; ++part) {
       const int x = 4 * (part & 1), y = 4 * (part >> 1 & 1), z = 4 * (part >> 2);
-      Extent extent;
-      for (int k = 0; k < 8; ++k) add_corner(corner, x + 4 * (k & 1), y + 4 * (k >> 1 & 1), z + 4 * (k >> 2), extent);
+      const Extent extent = extent_of(lattice, x / 4, y / 4, z / 4, 1);
       const Seen seen = judge(extent);
       if (seen == Seen::free) {
         for (std::size_t i = 0; i < kPart; ++i) see_through(voxel_of(x, y, z, i), surface, free_frames);
@@ -177,21 +220,13 @@ class Projecting {
     return (X_CW_ * (index.cast<double>() * (8.0 * config_.voxel_m))).cast<float>();
   }
 
-  // A point (x, y, z) voxels from the corner.
-  void add_corner(const Eigen::Vector3f& corner, int x, int y, int z, Extent& extent) const {
-    const Eigen::Vector3f p = corner + per_voxel_.col(0) * static_cast<float>(x) + per_voxel_.col(1) * static_cast<float>(y) +
-                              per_voxel_.col(2) * static_cast<float>(z);
-    const float inverse = 1.0f / std::max(p.z(), projection_.nearest);
-    extent.add(projection_.fx * p.x() * inverse + projection_.cx, projection_.fy * p.y() * inverse + projection_.cy, p.z());
-  }
-
   Seen judge(const Extent& e) const {
     if (e.far <= projection_.nearest || e.near > projection_.farthest) return Seen::nothing;
     if (e.near <= projection_.nearest) return Seen::mixed;
     if (e.u1 < -0.5f || e.v1 < -0.5f || e.u0 > projection_.right - 0.5f || e.v0 > projection_.bottom - 0.5f) return Seen::nothing;
     const DepthPyramid::Range range = pyramid_.range(e.u0, e.v0, e.u1, e.v1);
     // Behind all that is seen here.
-    if (range.largest + along_ < e.near) return Seen::nothing;
+    if (range.largest + along_behind_ < e.near) return Seen::nothing;
     const bool inside = e.u0 >= 0.0f && e.v0 >= 0.0f && e.u1 <= projection_.right - 1.0f && e.v1 <= projection_.bottom - 1.0f;
     // All before it, so far that no plane comes near either: planes lie within their pixels' depths, but for a little.
     if (inside && range.smallest > e.far + along_ + voxel_ && e.far <= max_depth_) return config_.carve ? Seen::free : Seen::nothing;
@@ -216,18 +251,16 @@ class Projecting {
     projection.around_width = around.width;
     Part part;
     project(projection, start, per_voxel_, part);
+    measure(part);
     bool changed = false;
     for (std::size_t i = 0; i < kPart; ++i) {
-      const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(part.patch[i])];
-      const float ahead = patch.nx * part.x[i] + patch.ny * part.y[i] + patch.nz * part.z[i];
-      const float distance = patch.h - ahead;
-      // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
-      if ((patch.weight > 0.0f) & (distance >= -behind_) & (distance <= truncation_) & (part.z[i] * std::abs(distance) <= along_ * ahead)) {
+      if (part.on_plane[i] != 0) {
         if (!surface) {
           fresh = std::make_unique<SurfaceVoxels>();
           surface = fresh.get();
         }
-        changed |= average(voxel_of(x, y, z, i), distance, patch, *surface, free_frames);
+        const SurfacePatch& patch = image_.patches[static_cast<std::size_t>(part.patch[i])];
+        changed |= average(voxel_of(x, y, z, i), part.distance[i], patch, *surface, free_frames);
       } else if (config_.carve && part.patch[i] != projection.outside && part.z[i] <= max_depth_ &&
                  around.smallest[part.around[i]] > part.z[i] + truncation_) {
         see_through(voxel_of(x, y, z, i), surface, free_frames);
@@ -235,6 +268,23 @@ class Projecting {
       }
     }
     return changed;
+  }
+
+  void measure(Part& part) const {
+    std::array<float, kPart> ahead, h;
+    for (std::size_t i = 0; i < kPart; ++i) {
+      const PatchPlane& plane = image_.planes[static_cast<std::size_t>(part.patch[i])];
+      ahead[i] = plane.nx * part.x[i] + plane.ny * part.y[i] + plane.nz * part.z[i];
+      h[i] = plane.h;
+    }
+    const float behind = behind_, truncation = truncation_, along = along_, along_behind = along_behind_;
+    for (std::size_t i = 0; i < kPart; ++i) {
+      const float d = h[i] - ahead[i];
+      part.distance[i] = d;
+      // d / (n . p) is how much farther the plane lies than the voxel on its line of sight, as a share of its depth.
+      part.on_plane[i] = static_cast<std::uint8_t>(when(d >= -behind) * when(d <= truncation) * when(part.z[i] * d <= along * ahead[i]) *
+                                                   when(-part.z[i] * d <= along_behind * ahead[i]));
+    }
   }
 
   bool average(std::size_t i, float distance, const SurfacePatch& patch, SurfaceVoxels& surface,
@@ -245,6 +295,9 @@ class Projecting {
     if (std::abs(distance) <= label_band_) surface.labels.add(static_cast<int>(i), patch.label);
     if (weight <= 0.0f) return false;
     TsdfVoxel& voxel = surface.voxels[i];
+    // What the voxel holds for a surface, this frame sees well before one.
+    const bool against = forgets() && distance > 2.0f * voxel_ && voxel.weight > 0.0f && voxel.distance <= voxel_;
+    if (against) see_through(i, &surface, free_frames);
     const float sum = voxel.weight + weight;
     const float share = weight / sum;
     voxel.distance += (distance - voxel.distance) * share;
@@ -257,17 +310,19 @@ class Projecting {
     blend(voxel.colour[1], patch.green);
     blend(voxel.colour[2], patch.blue);
     voxel.weight = std::min(sum, max_weight_);
-    if (distance >= -voxel_) {
+    if (distance >= -voxel_ && !against) {
       if (voxel.surface_frames < memory_) ++voxel.surface_frames;
       free_frames[i] = static_cast<std::uint8_t>(std::max(0, free_frames[i] - 2));
     }
     return true;
   }
 
+  bool forgets() const { return config_.projection.forget && forget_after_ > 0; }
+
   void see_through(std::size_t i, SurfaceVoxels* surface, std::array<std::uint8_t, 512>& free_frames) const {
     const int frames = std::min(free_frames[i] + 1, 4 * memory_);
     free_frames[i] = static_cast<std::uint8_t>(frames);
-    if (!surface || !config_.projection.forget || forget_after_ == 0 || frames < forget_after_) return;
+    if (!surface || !forgets() || frames < forget_after_) return;
     TsdfVoxel& voxel = surface->voxels[i];
     if (voxel.weight <= 0.0f || voxel.distance > voxel_ || frames <= 2 * std::min<int>(voxel.surface_frames, memory_)) return;
     voxel = TsdfVoxel{};
@@ -280,8 +335,10 @@ class Projecting {
   const TsdfConfig& config_;
   Pose X_CW_;
   Projection projection_{};
+  Lattice lattice_;
   Eigen::Matrix3f per_voxel_;  // step of one voxel along each axis of the world, in the camera's frame
-  float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f, max_depth_ = 0.0f;
+  float voxel_ = 0.0f, truncation_ = 0.0f, behind_ = 0.0f, along_ = 0.0f, along_behind_ = 0.0f, label_band_ = 0.0f, max_weight_ = 0.0f,
+        max_depth_ = 0.0f;
   float focal_ = 0.0f;
   int memory_ = 0, forget_after_ = 0;
 };

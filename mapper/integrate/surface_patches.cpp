@@ -163,6 +163,7 @@ class Patching {
     result_.patch_px = side_;
     result_.width = width_;
     result_.height = height_;
+    result_.planes.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
     result_.patches.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
     max_depth_ = static_cast<float>(config.max_depth_m);
     noise_ = static_cast<float>(config.projection.depth_noise_share);
@@ -389,7 +390,8 @@ class Patching {
     }
     make_planes(rules_, own, means_.spread.data() + i, means_.share.data() + i, planes.friends.data(), width_, planes.nx.data(),
                 planes.ny.data(), planes.nz.data(), planes.h.data(), planes.weight.data());
-    SurfacePatch* const patches = result_.patches.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    SurfacePatch* const patches = result_.patches.data() + first;
     const bool plane = config_.projection.plane_distance;
     for (int x = 0; x < width_; ++x) {
       const auto k = static_cast<std::size_t>(x);
@@ -401,6 +403,7 @@ class Patching {
       patch.ny = plane ? planes.ny[k] : 0.0f;
       patch.nz = plane ? planes.nz[k] : 1.0f;
       patch.h = plane ? planes.h[k] : patch.depth;
+      result_.planes[first + k] = {patch.nx, patch.ny, patch.nz, patch.h};
     }
   }
 

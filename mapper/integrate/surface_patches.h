@@ -29,10 +29,17 @@ struct SurfacePatch {
   float depth = 0.0f;      // metres along the optical axis, at its middle
 };
 
+// The same plane alone, for a first look at a voxel; h far below 0 where the patch makes no surface.
+struct PatchPlane {
+  static constexpr float kNoSurface = -1e9f;
+  float nx = 0.0f, ny = 0.0f, nz = 0.0f, h = kNoSurface;
+};
+
 struct PatchImage {
   int patch_px = 0;                   // pixels along an edge
   int width = 0, height = 0;          // patches
   std::vector<SurfacePatch> patches;  // row by row, and one more at the end that makes no surface
+  std::vector<PatchPlane> planes;     // one a patch
 
   const SurfacePatch& at(int x, int y) const {
     return patches[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];

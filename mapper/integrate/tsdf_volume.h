@@ -35,7 +35,7 @@ struct SurfaceVoxels {
 struct TsdfBlock {
   Eigen::Vector3i index;                           // voxels 8 * index to 8 * index + 7 on each axis
   std::unique_ptr<SurfaceVoxels> surface;          // none in blocks that were only seen to be free
-  std::array<std::uint8_t, 512> free_frames = {};  // frames that saw through the voxel, up to 255
+  std::array<std::uint8_t, 512> free_frames = {};  // frames that saw through it, up to 255; by projection less what spoke for a surface
 };
 
 // Occupied: within one voxel of a surface, or behind one as deep as it was recorded and not seen through more often. Free: before a
