@@ -80,6 +80,7 @@ MapMatch match_to_map(const LocalMap& map, const std::vector<ScanPoint>& points_
   const double min_cosine = std::cos(to_radians(config.max_normal_angle_deg));
   const double rotation_epsilon = to_radians(config.rotation_epsilon_deg);
   double distance = config.max_distance_m;
+  double kernel = 0.25 * config.max_distance_m;
   Eigen::Matrix3d H_scan = Eigen::Matrix3d::Zero();
   const auto give_up = [&] {
     MapMatch nothing;
@@ -93,7 +94,10 @@ MapMatch match_to_map(const LocalMap& map, const std::vector<ScanPoint>& points_
     pairs = correspondences(map, points_B, match.X_SB, bias, distance, min_cosine);
     if (pairs.size() < kFewestPairs) return give_up();
     const double sigma = spread(pairs);
-    const double scale = std::max(config.min_scale_m, 2.5 * sigma);
+    // Walls that already fit must not make outliers of those that do not yet: the kernel is wide at first.
+    const bool wide = kernel > config.min_scale_m;
+    const double scale = std::max({config.min_scale_m, kernel, 2.5 * sigma});
+    kernel *= 0.5;
     match.sigma_m = std::max(config.min_sigma_m, sigma);
     for (Pair& pair : pairs) {
       const double ratio = pair.residual / scale;
@@ -137,7 +141,7 @@ MapMatch match_to_map(const LocalMap& map, const std::vector<ScanPoint>& points_
     if (distance > config.fine_distance_m && moved < 0.02) {
       distance = config.fine_distance_m;
     } else {
-      last_round = step.head<2>().norm() <= config.translation_epsilon_m && std::abs(step.z()) <= rotation_epsilon;
+      last_round = !wide && step.head<2>().norm() <= config.translation_epsilon_m && std::abs(step.z()) <= rotation_epsilon;
     }
   }
   match.information = H_scan;

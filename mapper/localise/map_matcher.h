@@ -30,13 +30,13 @@ struct MapMatch {
   double bias_information = 0.0, bias_vector = 0.0;
 };
 
-// Gauss-Newton on sum w_i (n_i . (R p_i + t - q_i))^2 / sigma^2 + prior, with Geman-McClure weights whose scale follows the residuals'
-// spread (Chebrolu et al., "Adaptive robust kernels for non-linear least squares problems", RA-L 2021, name the family). `bias` is taken
-// off each range of the scan. The search begins at `start`. A direction of translation that fewer than degenerate_beams points hold (each
-// counts with the squared cosine between its normal and the direction; normals beyond 70 deg count for nothing, they are noise) is
-// projected out of the scan's equations, so that the prior alone decides there (Zhang, Kaess, Singh, "On degeneracy of optimization-based
-// state estimation problems", ICRA 2016). Too few correspondences give believable = false and the prior's pose; nothing is thrown.
-// Deterministic, single-threaded.
+// Gauss-Newton on sum w_i (n_i . (R p_i + t - q_i))^2 / sigma^2 + prior, with Geman-McClure weights whose scale begins wide and then
+// follows the residuals' spread (Chebrolu et al., "Adaptive robust kernels for non-linear least squares problems", RA-L 2021, name the
+// family). `bias` is taken off each range of the scan. The search begins at `start`. A direction of translation that fewer than
+// degenerate_beams points hold (each counts with the squared cosine between its normal and the direction; normals beyond 70 deg count for
+// nothing, they are noise) is projected out of the scan's equations, so that the prior alone decides there (Zhang, Kaess, Singh, "On
+// degeneracy of optimization-based state estimation problems", ICRA 2016). Too few correspondences give believable = false and the prior's
+// pose; nothing is thrown. Deterministic, single-threaded.
 MapMatch match_to_map(const LocalMap& map, const std::vector<ScanPoint>& points_B, const PosePrior& prior, const PlanarMotion& start,
                       double bias, const MapMatchConfig& config);
 

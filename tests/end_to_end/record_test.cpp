@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/end_to_end/program.h"
 
@@ -216,6 +217,46 @@ TEST(InspectNoise, MeasuresTheDepthCamerasOwnImages) {
   const Json registered = Json::parse(read_file(json));
   EXPECT_EQ(registered["view"], "registered");
   EXPECT_LT(registered["time_of_flight"]["noise_m"]["value"].get<double>(), native["time_of_flight"]["noise_m"]["value"].get<double>());
+}
+
+// Two scans in a square room, 0.1 m apart.
+TEST(LaserLog, IsInspectedAndMappedToATrajectory) {
+  const TemporaryFolder folder;
+  const auto scan = [](double x, double stamp) {
+    std::string line = "FLASER 181";
+    for (int i = 0; i <= 180; ++i) {
+      const double angle = (i - 90.0) * 3.14159265358979 / 180.0, c = std::cos(angle), s = std::abs(std::sin(angle));
+      line += " " + std::to_string(std::min(c > 1e-9 ? (4.0 - x) / c : 99.0, s > 1e-9 ? 3.0 / s : 99.0));
+    }
+    return line + " 0 0 0 0 0 0 " + std::to_string(stamp) + " host 0\n";
+  };
+  const fs::path log = folder.path() / "drive.log", out = folder.path() / "out";
+  write_file(log, "PARAM robot_frontlaser_offset 0.2 0 h 0\nODOM 0 0 0 0 0 0 1 h 1\n" + scan(0.0, 1.0) + "ODOM 0.12 0 0 0 0 0 1.2 h 1.2\n" +
+                      scan(0.1, 1.2));
+  const auto inspected = test::waretwin("inspect " + in_quotes(log));
+  EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
+  EXPECT_NE(inspected.out.find("181 beams over 180 deg"), std::string::npos) << inspected.out;
+  EXPECT_NE(inspected.out.find("2 scans, 2 odometry readings"), std::string::npos) << inspected.out;
+  for (const std::string profile : {"best", "paper"}) {
+    const auto mapped = test::waretwin("map " + in_quotes(log) + " --quiet --profile " + profile + " --out " + in_quotes(out));
+    ASSERT_EQ(mapped.exit_code, 0) << mapped.err;
+    EXPECT_NE(mapped.out.find("2 poses of the laser"), std::string::npos) << mapped.out;
+    std::istringstream rows(read_file(out / "trajectory.tum"));
+    double stamp = 0, x = 0, y = 0;
+    std::string rest;
+    for (const double expected : {0.2, 0.3}) {
+      rows >> stamp >> x >> y;
+      std::getline(rows, rest);
+      EXPECT_NEAR(x, expected, 0.002) << "the laser stands 0.2 m in front of the vehicle's centre";
+      EXPECT_NEAR(y, 0.0, 0.002);
+    }
+    EXPECT_TRUE(fs::exists(out / "report.html"));
+    EXPECT_TRUE(fs::exists(out / "config.yaml"));
+    EXPECT_FALSE(fs::exists(out / "map.glb"));
+    EXPECT_EQ(fs::exists(out / "trajectory_covariance.csv"), profile == "best");
+  }
+  write_file(log, "FLASER 2 1\n");
+  EXPECT_ONE_LINE(test::waretwin("map " + in_quotes(log) + " --out " + in_quotes(out)), "drive.log:1:");
 }
 
 TEST(InspectNoise, SaysWhatIsWrong) {

@@ -64,8 +64,7 @@ struct PlanarDrive {
         const PlanarMotion moved = wheels(to_seconds(now - step)).inverse() * wheels(to_seconds(now));
         const double length = moved.translation.norm();
         const auto n = static_cast<std::uint64_t>(now / step);
-        X_OB = X_OB * PlanarMotion{distance_scale * moved.translation,
-                                   turn_scale * moved.yaw + 0.01 * std::sqrt(length) * slip.normal(n)};
+        X_OB = X_OB * PlanarMotion{distance_scale * moved.translation, turn_scale * moved.yaw + 0.01 * std::sqrt(length) * slip.normal(n)};
       }
       localiser.add(OdometryReading{now, "wheels", upright(X_OB)});
       if (now % scan_step != 0) continue;
