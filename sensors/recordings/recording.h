@@ -12,7 +12,8 @@
 //   recording.yaml  calibration and start pose, exact (RecordingCalibration below); laser.txt and odometry.txt (text_formats.h).
 //   depth_native.txt  (tum) lines "seconds file" of the depth camera's own images, before they were warped into the colour view; in the
 //                   units of the other depth images, in the lens that recording.yaml names under camera.native.
-// A folder with laser.txt alone is a laser log, and so is a CARMEN log, which is one file (FILE.log, FILE.log.gz; carmen_log.h). Lines that begin with # and empty lines are comments in all text files.
+// A folder with laser.txt alone is a laser log, and so is a CARMEN log, which is one file (FILE.log, FILE.log.gz; carmen_log.h). Lines that
+// begin with # and empty lines are comments in all text files.
 #pragma once
 
 #include <filesystem>
@@ -85,9 +86,9 @@ class Recording : public SensorStream {
 // Whether a path is a file that open_recording takes for a CARMEN log: .log, .log.gz, .clf or .clf.gz.
 bool is_carmen_log(const std::filesystem::path& file);
 
-// Opens a folder or a CARMEN log. Pictures are decoded by RgbdFrame::load. Throws one Error for a folder of no known layout (naming what was looked for)
-// and for whatever in it is missing or damaged; pictures are checked when they are loaded. Without recording.yaml the vehicle's base is
-// the camera (X_BC = identity) and starts at the first recorded pose.
+// Opens a folder or a CARMEN log. Pictures are decoded by RgbdFrame::load. Throws one Error for a folder of no known layout (naming what
+// was looked for) and for whatever in it is missing or damaged; pictures are checked when they are loaded. Without recording.yaml the
+// vehicle's base is the camera (X_BC = identity) and starts at the first recorded pose.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& folder, const RecordingConfig& config = {});
 
 }  // namespace waretwin
