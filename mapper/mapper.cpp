@@ -105,6 +105,8 @@ void Mapper::take(const OdometryReading& reading) {
 void Mapper::take(const LaserScan& scan) {
   Stopwatch watch;
   stages_.localiser->add(scan);
+  // One laser localises, the first by name: a scan of another one brings no pose.
+  if (!info_.lasers.empty() && scan.sensor != info_.lasers.begin()->first) return;
   if (const auto X_WB = stages_.localiser->current_pose()) map_.trajectory.push_back({scan.stamp, *X_WB, stages_.localiser->covariance()});
   pending_localise_ms_ += watch.lap();
 }
@@ -157,8 +159,13 @@ void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport rep
   const Segmentation segmentation = stages_.segmenter->segment(frame, intrinsics, detections, X_WC);
   report.segment_ms = watch.lap();
 
-  const AssociationContext context = {
-      .frame_id = report.frame_id, .stamp = frame.stamp, .X_WC = X_WC, .intrinsics = intrinsics, .depth = frame.depth};
+  const AssociationContext context = {.frame_id = report.frame_id,
+                                      .stamp = frame.stamp,
+                                      .X_WC = X_WC,
+                                      .intrinsics = intrinsics,
+                                      .depth = frame.depth,
+                                      .detections = detections,
+                                      .tells_nothing = segmentation.tells_nothing};
   const std::vector<int> map_ids = stages_.associator->associate(segmentation.objects, context, map_.objects);
   for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
   report.associate_ms = watch.lap();

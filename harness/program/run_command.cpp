@@ -108,8 +108,11 @@ Command add_run_command(CLI::App& program) {
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
   command->add_option("--association", options->association, "map or truth")->capture_default_str()->check(CLI::IsMember({"map", "truth"}));
-  command->add_flag("--budget", options->budget,
-                    "drives once more and maps with the truth in place of each stage in turn: budget.md says what each stage costs");
+  command
+      ->add_flag("--budget", options->budget,
+                 "drives once more (with up to six maps in memory) and maps with the truth in place of each stage in turn: budget.md says "
+                 "what each stage costs")
+      ->excludes("--resume");
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->common.add_to(*command);
   command->footer(

@@ -43,7 +43,7 @@ double share_of(const Cuboid& part, const Cuboid& whole) {
 std::string also_covered(const ListedObject& mapped, const std::vector<ListedObject>& truth, int but_not) {
   std::string ids;
   for (const ListedObject& other : truth) {
-    if (other.id == but_not || share_of(other.cuboid, mapped.cuboid) < kOverlap) continue;
+    if (other.id == but_not || other.class_name != mapped.class_name || share_of(other.cuboid, mapped.cuboid) < kOverlap) continue;
     ids += (ids.empty() ? "" : ", ") + std::to_string(other.id);
   }
   return ids;
@@ -98,7 +98,7 @@ std::string about_missing(const ListedObject& object, const std::vector<ListedOb
                           const ScoringRules& rules) {
   for (const ObjectScore& row : score.objects) {
     const ListedObject* other = row.map_id && row.truth_id != object.id ? with_id(mapped, *row.map_id) : nullptr;
-    if (other && share_of(object.cuboid, other->cuboid) >= kOverlap) {
+    if (other && other->class_name == object.class_name && share_of(object.cuboid, other->cuboid) >= kOverlap) {
       return "merged with " + std::to_string(row.truth_id) + ": mapped object " + std::to_string(other->id) + " spans both";
     }
   }

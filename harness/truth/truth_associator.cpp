@@ -17,6 +17,7 @@ MapperConfig always(MapperConfig config) {
   config.associate.min_correlation = -1.0e9;
   config.associate.min_iou_3d = -1.0;
   config.evidence.min_overlap = -1.0;
+  config.evidence.min_presence = 0.0;  // a track only hears of the frames that show its object
   return config;
 }
 

@@ -14,7 +14,9 @@ struct AssociationContext {
   Stamp stamp = 0;
   Pose X_WC = Pose::Identity();
   Intrinsics intrinsics;
-  cv::Mat depth;  // the frame's, CV_32FC1 in metres; may be empty
+  cv::Mat depth;                      // the frame's, CV_32FC1 in metres; may be empty
+  std::vector<Detection> detections;  // all of the frame, whatever became of them
+  bool tells_nothing = false;         // Segmentation::tells_nothing
 };
 
 class Associator {

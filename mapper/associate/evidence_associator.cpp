@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mapper/associate/evidence_shape.h"
+#include "mapper/associate/similarity.h"
 
 namespace waretwin {
 
@@ -35,17 +36,18 @@ Eigen::AlignedBox3d bulk_of(const std::vector<EvidenceRay>& rays) {
   return {low, high};
 }
 
-// Share of some of the points that lie inside the cuboid.
-double share_inside(const std::vector<Eigen::Vector3f>& points_W, const Cuboid& cuboid, double margin) {
+// Share of some of the points that lie inside the cuboid, prolonged down to `floor_z`: what is known of an object grows from its top down.
+double share_inside(const std::vector<Eigen::Vector3f>& points_W, const Cuboid& cuboid, double floor_z, double margin) {
   if (points_W.empty()) return 0.0;
   const Eigen::Matrix3f R = cuboid.pose().linear().transpose().cast<float>();
   const Eigen::Vector3f centre = cuboid.centre.cast<float>();
   const Eigen::Vector3f half = (0.5 * cuboid.size + Eigen::Vector3d::Constant(margin)).cast<float>();
+  const auto low = static_cast<float>(std::min(floor_z, cuboid.bottom()) - margin);
   const std::size_t step = std::max<std::size_t>(1, points_W.size() / kOverlapSamples);
   std::size_t inside = 0, all = 0;
   for (std::size_t i = 0; i < points_W.size(); i += step, ++all) {
     const Eigen::Vector3f p = R * (points_W[i] - centre);
-    if ((p.array().abs() <= half.array()).all()) ++inside;
+    if (std::abs(p.x()) <= half.x() && std::abs(p.y()) <= half.y() && p.z() <= half.z() && points_W[i].z() >= low) ++inside;
   }
   return static_cast<double>(inside) / static_cast<double>(all);
 }
@@ -76,6 +78,14 @@ bool in_full_view(const Cuboid& cuboid, const AssociationContext& context) {
   return all >= 9 && seen >= 0.8 * all;
 }
 
+// True where a detection of its class, that came to nothing, may be the object.
+bool detected_near(const MappedObject& mapped, const AssociationContext& context) {
+  const auto box = projected_box(mapped.cuboid, context.X_WC, context.intrinsics);
+  return box && std::any_of(context.detections.begin(), context.detections.end(), [&](const Detection& detection) {
+           return detection.class_name == mapped.class_name && iou_2d(detection.box, *box) > 0.1;
+         });
+}
+
 double median(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -87,13 +97,18 @@ double median(std::vector<float> values) {
 std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context,
                                                ObjectList& map) {
   // A resumed map brings ids of its own.
-  for (const MappedObject& mapped : map) next_id_ = std::max(next_id_, mapped.id + 1);
+  for (const MappedObject& mapped : map) {
+    next_id_ = std::max(next_id_, mapped.id + 1);
+    const auto [track, fresh] = tracks_.try_emplace(mapped.id, config_);
+    if (fresh) track->second.resumed = mapped.observations;
+  }
 
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // -overlap, object, mapped
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t k = 0; k < map.size(); ++k) {
       if (objects[i].detection.class_name != map[k].class_name) continue;
-      const double overlap = share_inside(objects[i].points_W, map[k].cuboid, config_.overlap_margin_m);
+      const double margin = std::min(config_.overlap_margin_m, 0.25 * map[k].cuboid.size.head<2>().minCoeff());
+      const double overlap = share_inside(objects[i].points_W, map[k].cuboid, support_of(tracks_.at(map[k].id)), margin);
       if (overlap >= config_.min_overlap) pairs.emplace_back(-overlap, i, k);
     }
   }
@@ -104,7 +119,9 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
   for (const auto& [negative_overlap, i, k] : pairs) {
     if (partner[i] != kNone) continue;
     if (used[k]) {
-      contested[i] = 1;
+      // A neighbour lies in the margin, a second box in the object itself.
+      if (share_inside(objects[i].points_W, map[k].cuboid, support_of(tracks_.at(map[k].id)), 0.0) > config_.same_object_share)
+        contested[i] = 1;
       continue;
     }
     partner[i] = k;
@@ -131,11 +148,16 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
       continue;
     }
     MappedObject& mapped = map[partner[i]];
-    update(mapped, tracks_.try_emplace(mapped.id, config_).first->second, object, context);
+    update(mapped, tracks_.at(mapped.id), object, context);
     ids[i] = mapped.id;
   }
 
   count_misses(context, map);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (std::size_t k = i + 1; k < ids.size(); ++k) {
+      if (ids[i] != 0 && ids[k] != 0) apart_.insert(std::minmax(ids[i], ids[k]));
+    }
+  }
 
   const std::size_t merges_before = merges_.size();
   merge_overlapping(map);
@@ -150,24 +172,54 @@ void EvidenceAssociator::update(MappedObject& mapped, Track& track, const Segmen
   mapped.last_frame = context.frame_id;
   mapped.box = object.detection.box;
   ++mapped.observations;
-  if (object.support_W && std::isfinite(*object.support_W)) track.supports.push_back(static_cast<float>(*object.support_W));
-  track.grid.add(object.rays_from_W, object.rays, bulk_of(object.rays));
+  if (object.support_W) track.supports.push_back(static_cast<float>(*object.support_W));
+  track.grounds.push_back(static_cast<float>(object.ground_W));
+  if (static_cast<int>(track.pending.size()) < config_.shape_every && static_cast<int>(track.grounds.size()) <= config_.shape_every) {
+    SegmentedObject& kept = track.pending.emplace_back();
+    kept.rays = object.rays;
+    kept.rays_from_W = object.rays_from_W;
+    track.grid = EvidenceGrid(config_);
+    for (const SegmentedObject& earlier : track.pending) add_rays(track, earlier);
+    if (static_cast<int>(track.pending.size()) == config_.shape_every) track.pending = {};
+    shape(mapped, track);
+    return;
+  }
+  add_rays(track, object);
   // The more is known, the less another frame changes.
   const int next = track.shaped_at + std::max(config_.shape_every, track.shaped_at / 5);
-  if (mapped.observations <= config_.shape_every || mapped.observations >= next) shape(mapped, track);
+  if (mapped.observations >= next) shape(mapped, track);
+}
+
+double EvidenceAssociator::support_of(const Track& track) const {
+  const auto found = static_cast<double>(track.supports.size()), all = static_cast<double>(track.grounds.size());
+  if (found > 0.0 && found >= config_.support_share * all) return median(track.supports);
+  return track.grounds.empty() ? track.grid.origin().z() : median(track.grounds);
+}
+
+void EvidenceAssociator::add_rays(Track& track, const SegmentedObject& object) const {
+  const auto support = static_cast<float>(support_of(track)), clearance = static_cast<float>(config_.foot_clearance_m);
+  std::vector<EvidenceRay> rays = object.rays;
+  for (EvidenceRay& ray : rays) {
+    if (ray.kind != RayKind::object || ray.hit_W.z() > support + clearance) continue;
+    ray.kind = ray.hit_W.z() > support - clearance ? RayKind::unknown : RayKind::other;
+  }
+  track.grid.add(object.rays_from_W, rays, bulk_of(rays));
 }
 
 void EvidenceAssociator::shape(MappedObject& mapped, Track& track) const {
-  const double support = track.supports.empty() ? track.grid.origin().z() : median(track.supports);
-  if (const auto cuboid = evidence_cuboid(track.grid, support, config_)) mapped.cuboid = *cuboid;
   track.shaped_at = mapped.observations;
+  // An archive holds no evidence: a resumed object keeps its cuboid until about as much is known of it again.
+  if (2 * static_cast<int>(track.grounds.size()) < track.resumed) return;
+  if (const auto cuboid = evidence_cuboid(track.grid, support_of(track), config_)) mapped.cuboid = *cuboid;
 }
 
 void EvidenceAssociator::count_misses(const AssociationContext& context, const ObjectList& map) {
+  if (context.tells_nothing) return;
   for (const MappedObject& mapped : map) {
     if (mapped.last_frame == context.frame_id) continue;
     const auto track = tracks_.find(mapped.id);
-    if (track != tracks_.end() && in_full_view(mapped.cuboid, context)) ++track->second.misses;
+    if (track == tracks_.end() || detected_near(mapped, context) || !in_full_view(mapped.cuboid, context)) continue;
+    ++track->second.misses;
   }
 }
 
@@ -175,7 +227,7 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     for (std::size_t k = i + 1; k < map.size();) {
       const double smaller = std::min(map[i].cuboid.volume(), map[k].cuboid.volume());
-      if (map[i].class_name != map[k].class_name || smaller <= 0.0 ||
+      if (map[i].class_name != map[k].class_name || smaller <= 0.0 || apart_.contains(std::minmax(map[i].id, map[k].id)) ||
           intersection_volume(map[i].cuboid, map[k].cuboid) <= config_.merge_overlap * smaller) {
         ++k;
         continue;
@@ -189,6 +241,10 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
       merged.grid.add(other.grid);
       merged.misses += other.misses;
       merged.supports.insert(merged.supports.end(), other.supports.begin(), other.supports.end());
+      merged.grounds.insert(merged.grounds.end(), other.grounds.begin(), other.grounds.end());
+      merged.pending.insert(merged.pending.end(), other.pending.begin(), other.pending.end());
+      if (static_cast<int>(merged.grounds.size()) >= config_.shape_every) merged.pending = {};
+      merged.resumed = std::max(merged.resumed, other.resumed);
       tracks_.erase(stays.id);
       tracks_.erase(gone.id);
       stays.id = older;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "mapper/associate/associator.h"
@@ -26,19 +28,26 @@ class EvidenceAssociator : public Associator {
   struct Track {
     explicit Track(const EvidenceConfig& config) : grid(config) {}
     EvidenceGrid grid;
-    std::vector<float> supports;  // heights, one a frame
-    int shaped_at = 0;            // observations when the cuboid was searched
-    int misses = 0;               // frames in full view of it without a detection
+    std::vector<float> supports;  // heights, one a frame that found one
+    std::vector<float> grounds;   // heights, one a frame
+    // The first frames, until the support is settled: what a single frame takes for it may be wrong.
+    std::vector<SegmentedObject> pending;
+    int shaped_at = 0;  // observations when the cuboid was searched
+    int resumed = 0;    // observations that a resumed map came with
+    int misses = 0;     // frames in full view of it without a detection
   };
 
   void update(MappedObject& mapped, Track& track, const SegmentedObject& object, const AssociationContext& context);
+  double support_of(const Track& track) const;
+  void add_rays(Track& track, const SegmentedObject& object) const;
   void shape(MappedObject& mapped, Track& track) const;
   void count_misses(const AssociationContext& context, const ObjectList& map);
   void merge_overlapping(ObjectList& map);
 
   EvidenceConfig config_;
   int next_id_ = 1;
-  std::map<int, Track> tracks_;  // by map id
+  std::map<int, Track> tracks_;          // by map id
+  std::set<std::pair<int, int>> apart_;  // ids that one frame showed side by side: never one object
   std::vector<std::pair<int, int>> merges_;
 };
 

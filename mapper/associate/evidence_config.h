@@ -16,20 +16,23 @@ struct EvidenceConfig {
   double min_hits_share = 0.15;  // cells with fewer hits than this share of the median cell's are noise
   int min_hits = 3;
   double join_m = 0.02;             // parts nearer than this are one
-  double bridge_m = 0.5;            // so are parts up to this far away where no ray passed between them (a dark belt between its rails) ...
+  double bridge_m = 0.5;            // so are parts up to this far away with nothing but rays without depth between them (a dark belt) ...
   double bridge_share = 0.8;        // ... if this share of the hits on them at least is the object's
   double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
   double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
   double top_area_share = 0.04;     // ... and at least this share of it
+  double foot_clearance_m = 0.012;  // hits no higher above the support may be its own
+  double support_share = 0.4;       // the object stands on a support that so many of its frames found; else on the ground
   double foot_gap_m = 0.08;         // an object whose lowest cell is nearer to its support stands on it
   double heading_step_deg = 0.1;
   int shape_every = 5;  // the cuboid is searched again after so many more observations, or a fifth of those it has
   // Association
   double min_overlap = 0.3;  // share of a detection's points inside a mapped cuboid, grown by overlap_margin_m
   double overlap_margin_m = 0.05;
-  double merge_overlap = 0.5;  // of the smaller of two mapped cuboids, above which they are one object
-  int min_observations = 3;    // fewer are no object at the end
-  double min_presence = 0.3;   // detections over frames in which the object was in full view
+  double same_object_share = 0.6;  // a detection with more of its points inside an object that has one already is no other object
+  double merge_overlap = 0.5;      // of the smaller of two mapped cuboids, above which they are one object
+  int min_observations = 3;        // fewer are no object at the end
+  double min_presence = 0.3;       // detections over frames in which the object was in full view
 
   void visit(Fields& f) {
     f("cell_m", cell_m, "edge of a cell in x and y", {.min = 0.001, .max = 0.1});
@@ -42,12 +45,15 @@ struct EvidenceConfig {
     f("min_hits_share", min_hits_share, "cells with fewer hits than this share of the median cell's are noise", {.min = 0, .max = 1});
     f("min_hits", min_hits, "and cells with fewer than these", {.min = 1, .max = 1000});
     f("join_m", join_m, "parts nearer than this belong together", {.min = 0.001, .max = 1});
-    f("bridge_m", bridge_m, "so do parts up to this far away where no ray passed between them", {.min = 0, .max = 5});
+    f("bridge_m", bridge_m, "so do parts up to this far away with nothing but rays without depth between them", {.min = 0, .max = 5});
     f("bridge_share", bridge_share, "if at least this share of the hits on them is the object's", {.min = 0, .max = 1});
     f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
       {.min = 0, .max = 1});
     f("top_area_m2", top_area_m2, "the top is the highest level that at least this much of the footprint reaches", {.min = 0, .max = 10});
     f("top_area_share", top_area_share, "and at least this share of it", {.min = 0, .max = 1});
+    f("foot_clearance_m", foot_clearance_m, "hits no higher above the support may be its own", {.min = 0, .max = 1});
+    f("support_share", support_share, "share of an object's frames that must have found its support; else it stands on the ground",
+      {.min = 0, .max = 1});
     f("foot_gap_m", foot_gap_m, "an object whose lowest cell is nearer to its support stands on it", {.min = 0, .max = 1});
     f("heading_step_deg", heading_step_deg, "finest step of the heading search", {.min = 0.01, .max = 5});
     f("shape_every", shape_every, "the cuboid is searched again after so many more observations, or a fifth of those it has",
@@ -55,6 +61,8 @@ struct EvidenceConfig {
     f("min_overlap", min_overlap, "share of a detection's points inside a mapped cuboid for both to be one; -1: always",
       {.min = -1, .max = 1});
     f("overlap_margin_m", overlap_margin_m, "the cuboid grows by this for that question", {.min = 0, .max = 1});
+    f("same_object_share", same_object_share,
+      "a detection with more of its points inside an object that has its own in this frame is no other object", {.min = 0, .max = 1});
     f("merge_overlap", merge_overlap, "mapped objects that share more of the smaller one's volume are one", {.min = 0, .max = 1});
     f("min_observations", min_observations, "objects seen in fewer frames are taken out at the end", {.min = 1, .max = 1000});
     f("min_presence", min_presence,

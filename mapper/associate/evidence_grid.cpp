@@ -27,9 +27,12 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
   const int near_steps = std::max(1, static_cast<int>(std::ceil(config_.end_path_m / cell_)));
   const float near_reach = near_first + static_cast<float>(near_steps) * near_step;
   for (const EvidenceRay& ray : rays) {
-    const Eigen::Vector3f hit = ray.hit_W - origin;
+    Eigen::Vector3f hit = ray.hit_W - origin;
+    const bool blind = ray.kind == RayKind::blind;
+    // Wherever it ended: far beyond the grid.
+    if (blind) hit = from + (hit - from) * 100.0f;
     const float x = hit.x() * per_cell, y = hit.y() * per_cell, z = hit.z() * per_slice;
-    if (x >= 0.0f && y >= 0.0f && z >= 0.0f && x < width && y < depth && z < height) {
+    if (!blind && x >= 0.0f && y >= 0.0f && z >= 0.0f && x < width && y < depth && z < height) {
       EvidenceCell& cell = cells_[index(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z))];
       switch (ray.kind) {
         case RayKind::object:
@@ -44,11 +47,14 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
         case RayKind::unknown:
           count(cell.unknown);
           break;
+        case RayKind::blind:
+          break;
       }
     }
-    // Close before its end a ray would cross few middle planes; it is followed step by step instead.
+    // Close before its end on a side a ray would cross few middle planes; it is followed step by step instead. Above a level surface
+    // it passes no slice but those that lie above as a whole.
     const Eigen::Vector3f back = (from - hit).normalized();
-    for (int i = 0; i < near_steps; ++i) {
+    for (int i = 0; !blind && !ray.level && i < near_steps; ++i) {
       const Eigen::Vector3f p = hit + back * (near_first + static_cast<float>(i) * near_step);
       const float px = p.x() * per_cell, py = p.y() * per_cell, pz = p.z() * per_slice;
       if (!(px >= 0.0f && py >= 0.0f && pz >= 0.0f && px < width && py < depth && pz < height)) break;
@@ -57,7 +63,7 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
     // Slices that the ray crosses as a whole before that.
     const float rise = hit.z() - from.z();
     if (std::abs(rise) < 1e-4f) continue;
-    const float reach = std::abs(back.z()) * near_reach * per_slice;
+    const float reach = ray.level ? 0.7f : std::abs(back.z()) * near_reach * per_slice;
     const float low = rise < 0.0f ? z + reach : from.z() * per_slice, high = rise < 0.0f ? from.z() * per_slice : z - reach;
     const int first = std::max(0, static_cast<int>(std::ceil(low - 0.5f)));
     const int last = std::min(size_.z() - 1, static_cast<int>(std::floor(high - 0.5f)));
@@ -66,94 +72,82 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
       const float run = (static_cast<float>(k) + 0.5f) * slice - from.z();
       const float cx = (from.x() + run * dx) * per_cell, cy = (from.y() + run * dy) * per_cell;
       if (!(cx >= 0.0f && cy >= 0.0f && cx < width && cy < depth)) continue;
-      count(cells_[index(static_cast<int>(cx), static_cast<int>(cy), k)].passed);
+      EvidenceCell& cell = cells_[index(static_cast<int>(cx), static_cast<int>(cy), k)];
+      count(blind ? cell.blind : cell.passed);
     }
   }
 }
 
 void EvidenceGrid::add(const EvidenceGrid& other) {
   if (other.cells_.empty()) return;
-  const Eigen::Vector3d other_end = other.origin_ + other.size_.cast<double>().cwiseProduct(other.cell_size());
-  const double margin = config_.margin_m;
-  cover({other.origin_ + Eigen::Vector3d::Constant(margin), other_end - Eigen::Vector3d::Constant(margin)});
-  for (int z = 0; z < other.size_.z(); ++z) {
-    for (int y = 0; y < other.size_.y(); ++y) {
-      for (int x = 0; x < other.size_.x(); ++x) {
-        const EvidenceCell& from = other.cell(x, y, z);
-        if (from.hits() + from.passed == 0) continue;
-        const Eigen::Vector3d centre =
-            other.origin_ + (Eigen::Vector3d(x, y, z) + Eigen::Vector3d::Constant(0.5)).cwiseProduct(other.cell_size());
-        const Eigen::Vector3i at = ((centre - origin_).cwiseQuotient(cell_size())).array().floor().cast<int>();
-        if (at.minCoeff() < 0 || (at.array() >= size_.array()).any()) continue;
-        EvidenceCell& to = cells_[index(at.x(), at.y(), at.z())];
-        count(to.object, from.object);
-        count(to.other, from.other);
-        count(to.unknown, from.unknown);
-        count(to.passed, from.passed);
-        to.z_sum += from.z_sum;
-      }
-    }
-  }
+  const Eigen::AlignedBox3d reach(other.origin_, other.origin_ + other.size_.cast<double>().cwiseProduct(other.cell_size()));
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(config_.margin_m);
+  // Counts of a large cell cannot be shared out among small ones.
+  cover({reach.min() + margin, reach.max() - margin}, other.cell_);
+  if (cells_.empty()) return;
+  pour(other.cells_, other.origin_, other.size_, other.cell_size());
 }
 
-void EvidenceGrid::cover(const Eigen::AlignedBox3d& box_W) {
+void EvidenceGrid::cover(const Eigen::AlignedBox3d& box_W, double least_cell) {
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(config_.margin_m);
   Eigen::AlignedBox3d wanted(box_W.min() - margin, box_W.max() + margin);
-  int coarser = 1;
   if (cells_.empty()) {
     cell_ = config_.cell_m;
     slice_ = config_.slice_m;
-  } else {
-    const Eigen::AlignedBox3d now(origin_, origin_ + size_.cast<double>().cwiseProduct(cell_size()));
-    if (now.contains(wanted)) return;
-    wanted.extend(now);
   }
+  const Eigen::AlignedBox3d now(origin_, origin_ + size_.cast<double>().cwiseProduct(cell_size()));
   // What would be larger than an object may be is cut to the part around the grid's present middle.
-  const Eigen::Vector3d middle =
-      cells_.empty() ? wanted.center() : Eigen::Vector3d(origin_ + 0.5 * size_.cast<double>().cwiseProduct(cell_size()));
+  const Eigen::Vector3d middle = cells_.empty() ? wanted.center() : now.center();
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * config_.max_extent_m);
   wanted = wanted.intersection(Eigen::AlignedBox3d(middle - half, middle + half));
   if (wanted.isEmpty()) return;
+  if (!cells_.empty()) {
+    if (now.contains(wanted) && cell_ >= least_cell) return;
+    wanted.extend(now);
+  }
   const auto cells_of = [&](double cell, double slice) {
     const Eigen::Vector3d extent = wanted.sizes();
     return (extent.x() / cell + 1) * (extent.y() / cell + 1) * (extent.z() / slice + 1);
   };
-  while (cells_of(cell_ * coarser, slice_ * coarser) > config_.max_cells) coarser *= 2;
+  int coarser = 1;
+  while (cells_of(cell_ * coarser, slice_ * coarser) > config_.max_cells || cell_ * coarser < least_cell) coarser *= 2;
   const double cell = cell_ * coarser, slice = slice_ * coarser;
   const Eigen::Vector3d origin(floor_to(wanted.min().x(), cell), floor_to(wanted.min().y(), cell), floor_to(wanted.min().z(), slice));
   const Eigen::Vector3d extent = wanted.max() - origin;
   const Eigen::Vector3i size(static_cast<int>(std::ceil(extent.x() / cell)), static_cast<int>(std::ceil(extent.y() / cell)),
                              static_cast<int>(std::ceil(extent.z() / slice)));
-  move_into(origin, size, coarser);
-}
-
-void EvidenceGrid::move_into(const Eigen::Vector3d& origin, const Eigen::Vector3i& size, int coarser) {
-  std::vector<EvidenceCell> old = std::move(cells_);
+  const std::vector<EvidenceCell> old = std::move(cells_);
   const Eigen::Vector3i old_size = size_;
   const Eigen::Vector3d old_origin = origin_, old_cell = cell_size();
-  cell_ *= coarser;
-  slice_ *= coarser;
+  cell_ = cell;
+  slice_ = slice;
   origin_ = origin;
   size_ = size;
   cells_.assign(static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(size.z()), {});
+  pour(old, old_origin, old_size, old_cell);
+}
+
+void EvidenceGrid::pour(const std::vector<EvidenceCell>& cells, const Eigen::Vector3d& origin, const Eigen::Vector3i& size,
+                        const Eigen::Vector3d& cell) {
   std::size_t at = 0;
-  for (int z = 0; z < old_size.z(); ++z) {
-    const double height = old_origin.z() + (z + 0.5) * old_cell.z() - origin_.z();
+  for (int z = 0; z < size.z(); ++z) {
+    const double height = origin.z() + (z + 0.5) * cell.z() - origin_.z();
     const int to_z = static_cast<int>(std::floor(height / slice_));
-    for (int y = 0; y < old_size.y(); ++y) {
-      const int to_y = static_cast<int>(std::floor((old_origin.y() + (y + 0.5) * old_cell.y() - origin_.y()) / cell_));
-      for (int x = 0; x < old_size.x(); ++x, ++at) {
-        const EvidenceCell& from = old[at];
-        if (from.hits() + from.passed == 0) continue;
-        const int to_x = static_cast<int>(std::floor((old_origin.x() + (x + 0.5) * old_cell.x() - origin_.x()) / cell_));
+    for (int y = 0; y < size.y(); ++y) {
+      const int to_y = static_cast<int>(std::floor((origin.y() + (y + 0.5) * cell.y() - origin_.y()) / cell_));
+      for (int x = 0; x < size.x(); ++x, ++at) {
+        const EvidenceCell& from = cells[at];
+        if (from.hits() + from.passed + from.blind == 0) continue;
+        const int to_x = static_cast<int>(std::floor((origin.x() + (x + 0.5) * cell.x() - origin_.x()) / cell_));
         if (to_x < 0 || to_y < 0 || to_z < 0 || to_x >= size_.x() || to_y >= size_.y() || to_z >= size_.z()) continue;
         EvidenceCell& to = cells_[index(to_x, to_y, to_z)];
         count(to.object, from.object);
         count(to.other, from.other);
         count(to.unknown, from.unknown);
         count(to.passed, from.passed);
+        count(to.blind, from.blind);
         // Heights within the new cell.
-        const double shift = old_origin.z() + z * old_cell.z() - (origin_.z() + to_z * slice_);
+        const double shift = origin.z() + z * cell.z() - (origin_.z() + to_z * slice_);
         to.z_sum += from.z_sum + static_cast<float>(shift) * from.object;
       }
     }

@@ -3,7 +3,8 @@
 //
 // A ray with depth that may show the object ends in a cell (a hit: of the object, of something else, or of unknown label) and passes
 // all cells before it. A cell is filled where more rays end in it than pass it, and the object's where more of the hits are the
-// object's than another's. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane.
+// object's than another's. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane. Rays
+// that brought no depth are counted apart in all cells on their way.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +20,8 @@ namespace waretwin {
 struct EvidenceCell {
   std::uint16_t object = 0, other = 0, unknown = 0;  // hits
   std::uint16_t passed = 0;
-  float z_sum = 0.0f;  // metres above the cell's bottom, of the object's hits
+  std::uint16_t blind = 0;  // rays towards it or through it that brought no depth
+  float z_sum = 0.0f;       // metres above the cell's bottom, of the object's hits
 
   int hits() const { return object + other + unknown; }
 };
@@ -47,8 +49,11 @@ class EvidenceGrid {
                static_cast<std::size_t>(size_.x()) +
            static_cast<std::size_t>(x);
   }
-  void cover(const Eigen::AlignedBox3d& box_W);
-  void move_into(const Eigen::Vector3d& origin, const Eigen::Vector3i& size, int coarser);
+  // Makes the grid hold the box and the margin around it, with cells no smaller than `least_cell`.
+  void cover(const Eigen::AlignedBox3d& box_W, double least_cell = 0.0);
+  // Adds the counts of cells no larger than this grid's own.
+  void pour(const std::vector<EvidenceCell>& cells, const Eigen::Vector3d& origin, const Eigen::Vector3i& size,
+            const Eigen::Vector3d& cell);
 
   EvidenceConfig config_;
   double cell_ = 0.0, slice_ = 0.0;

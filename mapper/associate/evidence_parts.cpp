@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace waretwin {
 
@@ -12,9 +11,9 @@ namespace {
 // The cells of a grid, several at a time: as large as the gaps that are bridged.
 struct CoarseCell {
   double object = 0.0, other = 0.0;  // hits, of the object's cells
-  int cells = 0, free = 0;           // of the grid in it; those that more rays pass than end in
+  int cells = 0, blind = 0;          // of the grid in it; those that rays without depth met, and no others
   int part = 0;                      // 0: no cell of the object
-  bool is_free() const { return 2 * free > cells; }
+  bool is_blind() const { return 2 * blind > cells; }
 };
 
 class CoarseGrid {
@@ -31,7 +30,7 @@ class CoarseGrid {
           const EvidenceCell& cell = grid.cell(x, y, z);
           CoarseCell& coarse = at(of(x, y, z));
           ++coarse.cells;
-          if (cell.passed > cell.hits()) ++coarse.free;
+          if (cell.blind > cell.passed + cell.hits()) ++coarse.blind;
           if (!mine[i]) continue;
           coarse.object += cell.object;
           coarse.other += cell.other;
@@ -102,37 +101,17 @@ Gap gap_between(const Part& a, const Part& b) {
   return gap;
 }
 
-// True where hardly a ray passed on the way.
-bool untold(CoarseGrid& coarse, const Gap& gap) {
+// True where rays met most of the way and brought nothing back: a belt too dark for the camera. What no ray met (the shadow behind an
+// object) does not join anything.
+bool blind_between(CoarseGrid& coarse, const Gap& gap) {
   const int steps = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(gap.squared))));
-  int passed = 0, between = 0;
+  int blind = 0, between = 0;
   for (int i = 1; i < steps; ++i) {
     const Eigen::Vector3d p = gap.from.cast<double>() + (gap.to - gap.from).cast<double>() * (static_cast<double>(i) / steps);
     ++between;
-    if (coarse.at(p.array().round().matrix().cast<int>()).is_free()) ++passed;
+    if (coarse.at(p.array().round().matrix().cast<int>()).is_blind()) ++blind;
   }
-  return 4 * passed <= between;
-}
-
-// The cells of a part at one height.
-Part level(const Part& part, int z) {
-  Part cut;
-  for (const Eigen::Vector3i& c : part.cells) {
-    if (c.z() == z) cut.cells.push_back(c);
-  }
-  return cut;
-}
-
-// True where no height at which both stand shows free space between them. The highest is left out: noise lifts a few of the hits on a level
-// top into the free space above it.
-bool untold_at_all_heights(CoarseGrid& coarse, const Part& a, const Part& b) {
-  bool highest = true;
-  for (int z = coarse.size().z() - 1; z >= 0; --z) {
-    const Part a_z = level(a, z), b_z = level(b, z);
-    if (a_z.cells.empty() || b_z.cells.empty()) continue;
-    if (!std::exchange(highest, false) && !untold(coarse, gap_between(a_z, b_z))) return false;
-  }
-  return true;
+  return 4 * blind >= 3 * between;
 }
 
 }  // namespace
@@ -154,17 +133,12 @@ void keep_one_object(const EvidenceGrid& grid, std::vector<char>& mine, const Ev
   // From the nearest on: what lies behind a part is judged from there.
   std::vector<Gap> gaps(parts.size());
   for (const std::size_t i : open) gaps[i] = gap_between(parts[main], parts[i]);
-  Part whole = parts[main];
   while (!open.empty()) {
     const auto nearest = std::min_element(open.begin(), open.end(), [&](auto a, auto b) { return gaps[a].squared < gaps[b].squared; });
     const std::size_t i = *nearest;
     open.erase(nearest);
-    if (std::sqrt(static_cast<double>(gaps[i].squared)) * config.join_m > config.bridge_m ||
-        !untold_at_all_heights(coarse, whole, parts[i])) {
-      continue;
-    }
+    if (std::sqrt(static_cast<double>(gaps[i].squared)) * config.join_m > config.bridge_m || !blind_between(coarse, gaps[i])) continue;
     kept[i + 1] = 1;
-    whole.cells.insert(whole.cells.end(), parts[i].cells.begin(), parts[i].cells.end());
     for (const std::size_t k : open) {
       const Gap gap = gap_between(parts[i], parts[k]);
       if (gap.squared < gaps[k].squared) gaps[k] = gap;

@@ -22,11 +22,14 @@ std::vector<char> object_cells(const EvidenceGrid& grid, double support_z, const
   std::vector<int> hits;
   std::size_t i = 0;
   for (int z = 0; z < n.z(); ++z) {
-    const double top = grid.origin().z() + (z + 1) * grid.cell_size().z();
+    const double bottom = grid.origin().z() + z * grid.cell_size().z();
     for (int y = 0; y < n.y(); ++y) {
       for (int x = 0; x < n.x(); ++x, ++i) {
         const EvidenceCell& cell = grid.cell(x, y, z);
-        if (cell.object == 0 || cell.object <= cell.other || cell.hits() < cell.passed || top <= support_z) continue;
+        if (cell.object == 0 || cell.object <= cell.other || cell.hits() < cell.passed ||
+            bottom + cell.z_sum / cell.object <= support_z + config.foot_clearance_m) {
+          continue;
+        }
         mine[i] = 1;
         hits.push_back(cell.hits());
       }
@@ -80,13 +83,18 @@ Outline outline_of(const EvidenceGrid& grid, const std::vector<char>& mine) {
             {{grid.origin().x() + (x + 0.5) * grid.cell_size().x(), grid.origin().y() + (y + 0.5) * grid.cell_size().y()}, z});
       }
       if (top < 0) continue;
-      // Noise spreads a surface over slices: all that it reaches make its height.
+      // Noise spreads a surface over slices: all that it reaches make its height, but not what lies below it.
+      constexpr double kOneSurface = 0.01;
+      const EvidenceCell& highest = grid.cell(x, y, top);
+      const double height = grid.origin().z() + top * slice + highest.z_sum / highest.object;
       double sum = 0.0;
       int count = 0;
       for (int z = std::max(0, top - 1); z <= std::min(n.z() - 1, top + 1); ++z) {
         const EvidenceCell& cell = grid.cell(x, y, z);
         if (cell.object <= cell.other) continue;
-        sum += cell.z_sum + (grid.origin().z() + z * slice) * cell.object;
+        const double bottom = grid.origin().z() + z * slice;
+        if (std::abs(bottom + cell.z_sum / cell.object - height) > kOneSurface) continue;
+        sum += cell.z_sum + bottom * cell.object;
         count += cell.object;
       }
       outline.tops.push_back(sum / count);
@@ -157,6 +165,28 @@ Rectangle smallest_rectangle(const std::vector<OutlineCell>& border, double cell
   return best;
 }
 
+// True where something of the object reaches down to its support inside the rectangle: legs are too thin, and seen too seldom, to be among
+// its cells.
+bool has_feet(const EvidenceGrid& grid, const Rectangle& r, double support_z, const EvidenceConfig& config) {
+  const Eigen::Vector3d cell = grid.cell_size();
+  const Eigen::Vector2d along(std::cos(r.yaw), std::sin(r.yaw)), across(-along.y(), along.x());
+  int found = 0;
+  for (int z = 0; z < grid.size().z(); ++z) {
+    const double bottom = grid.origin().z() + z * cell.z();
+    if (bottom < support_z + config.foot_clearance_m || bottom > support_z + config.foot_gap_m) continue;
+    for (int y = 0; y < grid.size().y(); ++y) {
+      for (int x = 0; x < grid.size().x(); ++x) {
+        const EvidenceCell& c = grid.cell(x, y, z);
+        if (c.object == 0 || c.object <= c.other || c.hits() < c.passed) continue;
+        const Eigen::Vector2d p(grid.origin().x() + (x + 0.5) * cell.x(), grid.origin().y() + (y + 0.5) * cell.y());
+        const double u = p.dot(along), v = p.dot(across);
+        if (u >= r.x.low && u <= r.x.high && v >= r.y.low && v <= r.y.high) ++found;
+      }
+    }
+  }
+  return found >= config.min_hits;
+}
+
 }  // namespace
 
 std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
@@ -172,8 +202,8 @@ std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, double support_z
   const std::size_t nth = std::min((outline.tops.size() - 1) / 2, static_cast<std::size_t>(area / (cell * cell)));
   std::nth_element(outline.tops.begin(), outline.tops.begin() + static_cast<std::ptrdiff_t>(nth), outline.tops.end(), std::greater<>());
   const double top = outline.tops[nth];
-  // What stands on its support is seen down to the points that may be the support's own.
-  const double bottom = outline.lowest - support_z < config.foot_gap_m ? support_z : outline.lowest;
+  const bool stands = outline.lowest - support_z < config.foot_gap_m || has_feet(grid, r, support_z, config);
+  const double bottom = stands ? support_z : outline.lowest;
 
   Cuboid cuboid;
   const Eigen::Vector2d along(std::cos(r.yaw), std::sin(r.yaw)), across(-along.y(), along.x());

@@ -1,15 +1,17 @@
 #include "mapper/segment/depth_rays.h"
 
+#include <cmath>
+
 #include "core/error.h"
 #include "core/parallel.h"
 
 namespace waretwin {
 
-DepthRays::DepthRays(const StreamInfo& info, int thin) : cameras_(info.cameras), thin_(thin) {}
+DepthRays::DepthRays(const StreamInfo& info, int thin, bool native) : cameras_(info.cameras), thin_(thin), native_(native) {}
 
 const DepthRays::View& DepthRays::view_of(const RgbdFrame& frame) {
   const StreamInfo::Camera& camera = cameras_.at(frame.sensor);
-  const bool native = camera.native.has_value() && !frame.native_depth.empty();
+  const bool native = native_ && camera.native.has_value() && !frame.native_depth.empty();
   View& view = views_[{frame.sensor, native}];
   if (!view.rays_C.empty()) return view;
   view.native = native;
@@ -52,13 +54,18 @@ DepthPoints DepthRays::points(const RgbdFrame& frame, const Pose& X_WC, double d
       const auto* row = picture.ptr<float>(static_cast<int>(v) * thin_);
       std::size_t i = v * static_cast<std::size_t>(view.width);
       for (int u = 0; u < view.width; ++u, ++i) {
-        const float z = row[u * thin_];
+        const float measured = row[u * thin_];
         const Eigen::Vector3f& ray = view.rays_C[i];
         result.depth[i] = 0.0f;
-        if (!(z >= low && z <= high && z > 0.0f) || ray.isZero(0.0f)) continue;
+        const bool valid = measured >= low && measured <= high && measured > 0.0f && std::isfinite(measured);
+        const float z = valid ? measured : static_cast<float>(kNominalDepth);
+        // A pixel that sees nothing lies outside every box.
+        result.pixels[i] = Eigen::Vector2f::Constant(-1e6f);
+        // Beyond the range something was measured: that is not blindness.
+        if (ray.isZero(0.0f) || (!valid && measured > 0.0f)) continue;
         const Eigen::Vector3f p_C = z * ray + p_CD;
         if (!(p_C.z() > 1e-3f)) continue;
-        result.depth[i] = z;
+        if (valid) result.depth[i] = z;
         result.points_W[i] = R_WC * p_C + p_WC;
         result.pixels[i] = {fx * p_C.x() / p_C.z() + cx, fy * p_C.y() / p_C.z() + cy};
       }

@@ -11,19 +11,23 @@
 
 namespace waretwin {
 
+// Where a pixel without depth is taken to look, in metres: hardly matters, for the lenses of depth and colour are near each other.
+inline constexpr double kNominalDepth = 1.5;
+
 // Where the stream has it, the depth camera's own picture: what was warped into the colour view lacks the border of everything that
 // stands before something else, on one side more than on the other.
 struct DepthPoints {
   int width = 0, height = 0;                         // of the thinned picture
   Eigen::Vector3d from_W = Eigen::Vector3d::Zero();  // where the rays start
-  std::vector<float> depth;                          // metres along the axis; 0 = nothing measured, the rest is then unset
-  std::vector<Eigen::Vector3f> points_W;             // metres
+  std::vector<float> depth;                          // metres along the axis; 0 = nothing measured
+  std::vector<Eigen::Vector3f> points_W;             // metres; where nothing was measured, what lies kNominalDepth ahead
   std::vector<Eigen::Vector2f> pixels;               // of the colour picture, centre of the first pixel at (0.5, 0.5)
 };
 
 class DepthRays {
  public:
-  DepthRays(const StreamInfo& info, int thin);
+  // `native`: use the depth camera's own picture where there is one.
+  DepthRays(const StreamInfo& info, int thin, bool native = true);
 
   // Depth outside [depth_min, depth_max] is nothing. The frame's pictures are loaded.
   DepthPoints points(const RgbdFrame& frame, const Pose& X_WC, double depth_min, double depth_max);
@@ -40,6 +44,7 @@ class DepthRays {
 
   std::map<std::string, StreamInfo::Camera> cameras_;
   int thin_;
+  bool native_;
   std::map<std::pair<std::string, bool>, View> views_;
 };
 

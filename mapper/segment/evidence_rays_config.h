@@ -13,6 +13,7 @@ struct EvidenceRaysConfig {
   double box_slack_share = 0.01;  // the same relative to the box's size; the larger holds
   double max_turn_deg_s = 40.0;   // frames taken in faster rotation tell nothing
   double same_box_iou = 0.7;      // boxes of one class that overlap more are one
+  bool native = true;             // rays of the depth camera's own picture, where the stream has it
   int thin = 1;                   // every n-th row and column of the depth image
 
   void visit(Fields& f) {
@@ -22,6 +23,7 @@ struct EvidenceRaysConfig {
     f("box_slack_share", box_slack_share, "the same relative to the box's size; the larger holds", {.min = 0, .max = 0.4});
     f("max_turn_deg_s", max_turn_deg_s, "frames taken while the camera turned faster are left out", {.min = 0, .max = 1e4});
     f("same_box_iou", same_box_iou, "boxes of one class whose 2D IoU is above this are one", {.min = 0, .max = 1});
+    f("native", native, "rays are those of the depth camera's own picture, where the stream has it; false: of the colour view");
     f("thin", thin, "every n-th row and column of the depth image gives rays", {.min = 1, .max = 16});
   }
 };

@@ -24,10 +24,26 @@ cv::Rect2f grown(const cv::Rect2f& box, double share, double least_px) {
   return {box.x - dx, box.y - dy, box.width + 2 * dx, box.height + 2 * dy};
 }
 
+// A surface is level where the neighbours on both axes of the picture lie at about the same height.
+bool is_level(const DepthPoints& points, std::size_t i) {
+  constexpr std::size_t kStep = 2;  // pixels
+  constexpr float kSlope = 0.35f;   // 19 deg
+  const auto width = static_cast<std::size_t>(points.width);
+  const std::size_t u = i % width;
+  if (points.depth[i] == 0.0f || u < kStep || u + kStep >= width || i < kStep * width || i + kStep * width >= points.depth.size())
+    return false;
+  for (const std::size_t step : {kStep, kStep * width}) {
+    if (points.depth[i - step] == 0.0f || points.depth[i + step] == 0.0f) return false;
+    const Eigen::Vector3f along = points.points_W[i + step] - points.points_W[i - step];
+    if (std::abs(along.z()) > kSlope * along.head<2>().norm()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 EvidenceSegmenter::EvidenceSegmenter(const SegmentConfig& config, const EvidenceRaysConfig& rays, const StreamInfo& info)
-    : config_(config), rays_config_(rays), cameras_(info.cameras), depth_rays_(info, rays.thin) {}
+    : config_(config), rays_config_(rays), cameras_(info.cameras), depth_rays_(info, rays.thin, rays.native) {}
 
 bool EvidenceSegmenter::turns_too_fast(const RgbdFrame& frame, const Pose& X_WC) {
   const Eigen::Quaterniond q(X_WC.linear());
@@ -45,6 +61,7 @@ Segmentation EvidenceSegmenter::segment(const RgbdFrame& frame, const Intrinsics
                                         const Pose& X_WC) {
   Segmentation result;
   const bool fast = turns_too_fast(frame, X_WC);
+  result.tells_nothing = fast;
   if (detections.empty()) return result;
   if (fast) {
     result.rejected["camera turns too fast"] += static_cast<int>(detections.size());
@@ -59,78 +76,31 @@ Segmentation EvidenceSegmenter::segment(const RgbdFrame& frame, const Intrinsics
   if (depth_max <= 0.0) depth_max = std::numeric_limits<double>::infinity();
 
   const DepthPoints points = depth_rays_.points(frame, X_WC, depth_min, depth_max);
-  const double ground = ground_of(points);
-  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
-  const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
-  for (std::size_t d = 0; d < detections.size(); ++d) {
-    const Detection& detection = detections[d];
+  const SupportPlane ground = ground_of(points);
+  std::vector<Box> boxes;
+  for (const Detection& detection : detections) {
     // Of boxes that are nearly the same one is enough.
-    const auto same = [&](const Detection& other) {
-      return other.class_name == detection.class_name && iou_2d(other.box, detection.box) > rays_config_.same_box_iou;
+    const auto same = [&](const Box& other) {
+      return other.detection->class_name == detection.class_name && iou_2d(other.detection->box, detection.box) > rays_config_.same_box_iou;
     };
-    if (std::any_of(detections.begin(), detections.begin() + static_cast<std::ptrdiff_t>(d), same)) {
+    if (std::any_of(boxes.begin(), boxes.end(), same)) {
       ++result.rejected["second box on an object"];
-      continue;
+    } else {
+      boxes.push_back(look_at(points, detection, ground));
     }
+  }
+  for (const Box& box : boxes) {
     SegmentedObject object;
-    object.detection = detection;
-    const cv::Rect2f& box = detection.box;
-    const auto support = support_of(points, box, ground);
-    const double floor = support ? support->height : ground;
-    const double sigma = support ? support->sigma : 0.0;
-    const float clearance = static_cast<float>(std::clamp(3.0 * sigma, config_.planes.clearance_min_m, config_.planes.clearance_max_m));
-    const auto slack =
-        static_cast<float>(std::max<double>(rays_config_.box_slack_px, rays_config_.box_slack_share * std::max(box.width, box.height)));
-    const cv::Rect2f inner = grown(box, -slack), outer = grown(box, slack);
-    const cv::Rect2f region = grown(box, rays_config_.ring_share, rays_config_.ring_min_px);
-    std::vector<const cv::Rect2f*> others;
-    for (const Detection& other : detections) {
-      if (&other != &detection && !same(other) && (grown(other.box, slack) & outer).area() > 0.0f) others.push_back(&other.box);
-    }
-    object.support_W = floor;
+    object.detection = *box.detection;
+    if (box.on_support) object.support_W = box.floor;
+    object.ground_W = ground.height;
     object.rays_from_W = points.from_W;
-    int with_depth = 0;
-    for (std::size_t i = 0; i < points.depth.size(); ++i) {
-      if (points.depth[i] == 0.0f || !inside(region, points.pixels[i])) continue;
-      EvidenceRay ray{points.points_W[i], RayKind::other};
-      const float above = ray.hit_W.z() - static_cast<float>(floor);
-      if (inside(outer, points.pixels[i])) {
-        ++with_depth;
-        if (above > clearance) {
-          ray.kind = inside(inner, points.pixels[i]) ? RayKind::object : RayKind::unknown;
-          for (const cv::Rect2f* other : others) {
-            if (inside(grown(*other, slack), points.pixels[i])) ray.kind = RayKind::unknown;
-          }
-        } else if (above > -clearance) {
-          ray.kind = RayKind::unknown;
-        }
-      }
-      object.rays.push_back(ray);
-    }
+    const int with_depth = collect_rays(points, box, boxes, object.rays);
     if (with_depth * rays_config_.thin * rays_config_.thin < config_.min_pixels) {
       ++result.rejected["no depth"];
       continue;
     }
-    // The same decision for the pixels of the colour view, which carry the labels.
-    const cv::Rect rect =
-        cv::Rect(cv::Point(static_cast<int>(std::ceil(box.x - 0.5f)), static_cast<int>(std::ceil(box.y - 0.5f))),
-                 cv::Point(static_cast<int>(std::ceil(box.x + box.width - 0.5f)), static_cast<int>(std::ceil(box.y + box.height - 0.5f)))) &
-        cv::Rect(0, 0, intrinsics.width, intrinsics.height);
-    const auto low = static_cast<float>(depth_min), high = static_cast<float>(std::min(depth_max, 1e6));
-    const auto fx = static_cast<float>(1.0 / intrinsics.fx), fy = static_cast<float>(1.0 / intrinsics.fy);
-    for (int v = rect.y; v < rect.br().y; ++v) {
-      const auto* row = frame.depth.ptr<float>(v);
-      const float y = (static_cast<float>(v) - static_cast<float>(intrinsics.cy)) * fy;
-      for (int u = rect.x; u < rect.br().x; ++u) {
-        const float z = row[u];
-        if (!(z > low && z <= high)) continue;
-        const Eigen::Vector3f p_W =
-            R_WC * (z * Eigen::Vector3f((static_cast<float>(u) - static_cast<float>(intrinsics.cx)) * fx, y, 1.0f)) + p_WC;
-        if (p_W.z() - static_cast<float>(floor) <= clearance) continue;
-        object.pixels.push_back(v * intrinsics.width + u);
-        object.points_W.push_back(p_W);
-      }
-    }
+    collect_pixels(frame, intrinsics, X_WC, box, {depth_min, depth_max}, object);
     if (static_cast<int>(object.pixels.size()) < config_.min_pixels) {
       ++result.rejected["only ground or support"];
       continue;
@@ -140,22 +110,136 @@ Segmentation EvidenceSegmenter::segment(const RgbdFrame& frame, const Intrinsics
   return result;
 }
 
-double EvidenceSegmenter::ground_of(const DepthPoints& points) const {
-  const PlaneConfig& config = config_.planes;
-  if (config.ground == "world_zero") return config.ground_height_m;
-  // The lowest height at which much is level: a floor fills many pixels, what is seen through a hole in it does not.
-  constexpr double kBin = 0.02;
+EvidenceSegmenter::Box EvidenceSegmenter::look_at(const DepthPoints& points, const Detection& detection, const SupportPlane& ground) const {
+  Box box;
+  box.detection = &detection;
+  const cv::Rect2f& b = detection.box;
+  const auto support = support_of(points, b, ground.height);
+  box.on_support = support.has_value();
+  box.floor = support ? support->height : ground.height;
+  const double sigma = support ? support->sigma : ground.sigma;
+  box.clearance = static_cast<float>(std::clamp(3.0 * sigma, config_.planes.clearance_min_m, config_.planes.clearance_max_m));
+  const auto slack =
+      static_cast<float>(std::max<double>(rays_config_.box_slack_px, rays_config_.box_slack_share * std::max(b.width, b.height)));
+  box.inner = grown(b, -slack);
+  box.outer = grown(b, slack);
+  box.region = grown(b, rays_config_.ring_share, rays_config_.ring_min_px);
+  const auto& first = config_.cut_first;
+  if (std::find(first.begin(), first.end(), detection.class_name) != first.end()) box.top = top_of(points, box);
+  return box;
+}
+
+// The height at which most of what stands in the box is level: a table's top.
+double EvidenceSegmenter::top_of(const DepthPoints& points, const Box& box) const {
+  constexpr double kBin = 0.01, kLeast = 0.2;
   std::map<int, int> histogram;
-  int total = 0;
-  for (std::size_t i = 0; i < points.depth.size(); i += 7) {
-    if (points.depth[i] == 0.0f) continue;
-    ++histogram[static_cast<int>(std::floor(points.points_W[i].z() / kBin))];
-    ++total;
+  if (!std::isfinite(box.floor)) return std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < points.depth.size(); ++i) {
+    if (points.depth[i] == 0.0f || !inside(box.inner, points.pixels[i])) continue;
+    const double above = points.points_W[i].z() - box.floor;
+    if (above > kLeast) ++histogram[static_cast<int>(above / kBin)];
   }
+  if (histogram.empty()) return std::numeric_limits<double>::quiet_NaN();
+  int best = 0, most = 0;
   for (const auto& [bin, count] : histogram) {
-    if (count > 0.05 * total) return (bin + 0.5) * kBin;
+    if (count > most) best = bin, most = count;
   }
-  return -std::numeric_limits<double>::infinity();
+  return box.floor + (best + 0.5) * kBin;
+}
+
+// What a ray that ends inside the box and above its support is, where other boxes hold it as well.
+RayKind EvidenceSegmenter::contested(const Box& mine, const std::vector<Box>& boxes, const Eigen::Vector2f& pixel, float z) const {
+  constexpr double kTopThickness = 0.04, kTopNoise = 0.01;  // metres
+  const auto at_top = [z](const Box& table) { return z >= table.top - kTopThickness && z <= table.top + kTopNoise; };
+  RayKind kind = RayKind::object;
+  for (const Box& other : boxes) {
+    if (&other == &mine || !inside(other.outer, pixel)) continue;
+    const bool my_table = std::isfinite(mine.top), other_table = std::isfinite(other.top);
+    if (my_table != other_table) {
+      // Section 4.2: tables first; what is left in their box belongs to what stands under or on them.
+      if (my_table && !at_top(mine)) kind = RayKind::unknown;
+      if (other_table && at_top(other)) kind = RayKind::unknown;
+      continue;
+    }
+    const cv::Rect2f &a = mine.detection->box, &b = other.detection->box;
+    const float shared = (a & b).area();
+    // A box within another one is an object before or on the other.
+    if (shared > 0.8f * a.area() && a.area() < 0.8f * b.area()) continue;
+    kind = RayKind::unknown;
+  }
+  return kind;
+}
+
+int EvidenceSegmenter::collect_rays(const DepthPoints& points, const Box& box, const std::vector<Box>& boxes,
+                                    std::vector<EvidenceRay>& rays) const {
+  int with_depth = 0;
+  for (std::size_t i = 0; i < points.depth.size(); ++i) {
+    const Eigen::Vector2f& pixel = points.pixels[i];
+    if (!inside(box.region, pixel)) continue;
+    EvidenceRay ray{points.points_W[i], RayKind::other, is_level(points, i)};
+    if (points.depth[i] == 0.0f) {
+      if (!inside(box.inner, pixel)) continue;
+      ray.kind = RayKind::blind;
+    } else if (inside(box.outer, pixel)) {
+      ++with_depth;
+      const float above = ray.hit_W.z() - static_cast<float>(box.floor);
+      if (above > box.clearance) {
+        ray.kind = inside(box.inner, pixel) ? contested(box, boxes, pixel, ray.hit_W.z()) : RayKind::unknown;
+      } else if (above > -box.clearance) {
+        ray.kind = RayKind::unknown;
+      }
+    }
+    rays.push_back(ray);
+  }
+  return with_depth;
+}
+
+// The same for the pixels of the colour view, which carry the labels.
+void EvidenceSegmenter::collect_pixels(const RgbdFrame& frame, const Intrinsics& intrinsics, const Pose& X_WC, const Box& box,
+                                       std::pair<double, double> depth_range, SegmentedObject& object) const {
+  const cv::Rect2f& b = box.detection->box;
+  const auto first = [](float edge) { return static_cast<int>(std::ceil(edge - 0.5f)); };
+  const cv::Rect rect = cv::Rect(cv::Point(first(b.x), first(b.y)), cv::Point(first(b.x + b.width), first(b.y + b.height))) &
+                        cv::Rect(0, 0, intrinsics.width, intrinsics.height);
+  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
+  const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
+  const auto low = static_cast<float>(depth_range.first), high = static_cast<float>(std::min(depth_range.second, 1e6));
+  const auto fx = static_cast<float>(1.0 / intrinsics.fx), fy = static_cast<float>(1.0 / intrinsics.fy);
+  const auto cx = static_cast<float>(intrinsics.cx), cy = static_cast<float>(intrinsics.cy), floor = static_cast<float>(box.floor);
+  for (int v = rect.y; v < rect.br().y; ++v) {
+    const auto* row = frame.depth.ptr<float>(v);
+    const float y = (static_cast<float>(v) - cy) * fy;
+    for (int u = rect.x; u < rect.br().x; ++u) {
+      const float z = row[u];
+      if (!(z > low && z <= high)) continue;
+      const Eigen::Vector3f p_W = R_WC * (z * Eigen::Vector3f((static_cast<float>(u) - cx) * fx, y, 1.0f)) + p_WC;
+      if (p_W.z() - floor <= box.clearance) continue;
+      object.pixels.push_back(v * intrinsics.width + u);
+      object.points_W.push_back(p_W);
+    }
+  }
+}
+
+SupportPlane EvidenceSegmenter::ground_of(const DepthPoints& points) {
+  const PlaneConfig& config = config_.planes;
+  std::vector<HeightSample> samples;
+  for (std::size_t i = 0; i < points.depth.size(); i += 7) {
+    if (points.depth[i] != 0.0f) samples.push_back({0, 0, points.points_W[i].z(), false});
+  }
+  double rough = config.ground_height_m;
+  if (config.ground != "world_zero") {
+    // The lowest height at which much is level: a floor fills many pixels, what is seen through a hole in it does not.
+    constexpr double kBin = 0.02, kShare = 0.05;
+    std::map<int, int> histogram;
+    for (const HeightSample& sample : samples) ++histogram[static_cast<int>(std::floor(sample.height / kBin))];
+    const auto lowest = std::find_if(histogram.begin(), histogram.end(),
+                                     [&](const auto& bin) { return bin.second > kShare * static_cast<double>(samples.size()); });
+    // Out of sight, it is where it was last seen.
+    if (lowest == histogram.end()) return last_ground_;
+    rough = (lowest->first + 0.5) * kBin;
+  }
+  last_ground_ = refine_level(samples, rough, config.ground_tolerance_m, false);
+  return last_ground_;
 }
 
 std::optional<SupportPlane> EvidenceSegmenter::support_of(const DepthPoints& points, const cv::Rect2f& box, double ground) const {

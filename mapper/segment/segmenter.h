@@ -15,12 +15,14 @@
 
 namespace waretwin {
 
-enum class RayKind : std::uint8_t { object, other, unknown };
+// Blind: the pixel brought no depth; the ray then tells a direction alone.
+enum class RayKind : std::uint8_t { object, other, unknown, blind };
 
-// One pixel of a depth image: where its ray ended, and whether that is the detected object.
+// One pixel of a depth image: where its ray ended (blind: a point that it points at), and whether that is the detected object.
 struct EvidenceRay {
   Eigen::Vector3f hit_W = Eigen::Vector3f::Zero();  // metres
   RayKind kind = RayKind::unknown;
+  bool level = false;  // it ended on a level surface
 };
 
 struct SegmentedObject {
@@ -29,14 +31,18 @@ struct SegmentedObject {
   std::vector<Eigen::Vector3f> points_W;  // one per pixel, same order
   Cuboid cuboid;                          // around points_W, frame "world"
   std::vector<float> hsv;                 // colour histogram of the box, for eq. (4)
-  // Profile best: what the rays in and around the box tell, and where they start; the height of what the object stands on.
+  // Profile best: what the rays in and around the box tell, and where they start; the height of
+  // what the object stands on, where it is not the ground, and that of the ground (-infinity where none is known).
   std::vector<EvidenceRay> rays = {};
   Eigen::Vector3d rays_from_W = Eigen::Vector3d::Zero();
   std::optional<double> support_W = std::nullopt;
+  double ground_W = 0.0;
 };
 
 struct Segmentation {
   std::vector<SegmentedObject> objects;
+  // The frame was left out as a whole (taken in fast rotation): that an object was not found in it means nothing.
+  bool tells_nothing = false;
   // Why detections came to nothing ("no depth", "cluster below 70 %"): counted in reports, never an error.
   std::map<std::string, int> rejected;
 };

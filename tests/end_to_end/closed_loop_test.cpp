@@ -134,13 +134,14 @@ TEST(ClosedLoop, PutsTheTruthInPlaceOfStages) {
   EXPECT_EQ(score["stages"]["association"], "truth");
 }
 
+// The small network sees the chair in two frames of sixty.
 TEST(ClosedLoop, FindsAChairInAKitchen) {
   WARETWIN_NEED_DATA("rgbd_7scenes");
   WARETWIN_NEED_DATA("yolo_fastest");
   const TemporaryFolder folder;
-  const auto result =
-      test::waretwin("map '" + test::shared_data("rgbd_7scenes").string() + "' --quiet --out '" + folder.path().string() +
-                     "' --detector '" + test::shared_data("yolo_fastest").string() + "' --set mapper.detect.confidence=0.3");
+  const auto result = test::waretwin("map '" + test::shared_data("rgbd_7scenes").string() + "' --quiet --out '" + folder.path().string() +
+                                     "' --detector '" + test::shared_data("yolo_fastest").string() +
+                                     "' --set mapper.detect.confidence=0.3 --set mapper.evidence.min_observations=2");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("60 of 60 frames mapped"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(" chair at "), std::string::npos) << result.out;

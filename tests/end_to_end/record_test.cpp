@@ -105,7 +105,7 @@ TEST(Record, IsTheSameAtAnyNumberOfThreadsAndMapsWithoutItsTruth) {
     const fs::path name = fs::relative(entry.path(), folder.path() / "1");
     EXPECT_EQ(read_file(entry.path()), read_file(folder.path() / "4" / name)) << name;
   }
-  EXPECT_EQ(files, 3 * 3 + 9);
+  EXPECT_EQ(files, 3 * 3 + 10);
   const std::string map = " --quiet --profile paper --detector none --out " + in_quotes(folder.path() / "map");
   const auto with = test::waretwin("map " + in_quotes(folder.path() / "1") + map);
   for (const char* name : {"truth.json", "truth_boxes.json", "trajectory_truth.tum", "config.yaml"}) fs::remove(folder.path() / "1" / name);

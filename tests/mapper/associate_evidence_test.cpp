@@ -216,5 +216,49 @@ TEST(Evidence, SecondBoxOnAnObjectIsNoOtherObject) {
   EXPECT_EQ(mapping.finish().size(), 1u);
 }
 
+TEST(Evidence, CutsATableOutBeforeTheChairUnderIt) {
+  // Section 4.2 of the paper. The chair stands half under the table; its box lies in the table's.
+  const Cuboid top = box(0, 0, 0.72, 0, 1.2, 0.8, 0.03);
+  const Cuboid chair = box(0.1, -0.35, 0, 0.2, 0.40, 0.40, 0.45);
+  TracedScene scene{{top, chair}, {}, true};
+  for (const double x : {-0.57, 0.57}) {
+    for (const double y : {-0.37, 0.37}) scene.boxes.push_back(box(x, y, 0, 0, 0.05, 0.05, 0.72));
+  }
+  EvidenceMapping mapping;
+  for (const Pose& X_WC : a_drive_past()) {
+    const Pose back = Eigen::Translation3d(0, -0.45, 0) * X_WC;
+    test::TracedFrame traced = test::trace(scene, mapping.intrinsics(), back, 0.002);
+    cv::Rect2f table = *traced.boxes[0];
+    for (std::size_t leg = 2; leg < 6; ++leg) {
+      if (traced.boxes[leg]) table |= *traced.boxes[leg];
+    }
+    mapping.take(std::move(traced.frame), back, {{"chair", *traced.boxes[1], 1.0f}, {"table", table, 1.0f}});
+  }
+  ASSERT_EQ(mapping.finish().size(), 2u);
+  const MappedObject& first = mapping.map[0];
+  const MappedObject& mapped_chair = first.class_name == "chair" ? first : mapping.map[1];
+  const MappedObject& mapped_table = first.class_name == "chair" ? mapping.map[1] : first;
+  EXPECT_EQ(mapped_table.class_name, "table");
+  EXPECT_NEAR(mapped_table.cuboid.top(), 0.75, 0.005);
+  EXPECT_NEAR(mapped_table.cuboid.size.x(), 1.2, 0.03);
+  EXPECT_NEAR(mapped_table.cuboid.size.y(), 0.8, 0.03);
+  // Of the chair what sticks out is seen: nothing of the table above it.
+  EXPECT_LT(mapped_chair.cuboid.top(), 0.5);
+  EXPECT_GT(iou_3d(mapped_chair.cuboid, chair), 0.4);
+}
+
+TEST(Evidence, ASingleFrameWithoutItsSupportDoesNotBringTheCabinetIn) {
+  const TracedScene scene{{cabinet(), conveyor()}, {}, true};
+  EvidenceMapping mapping;
+  // From this near the ring around the box sees hardly anything of the cabinet: the floor is taken for the support.
+  test::TracedFrame traced = test::trace(scene, mapping.intrinsics(), from_the_front(0), 0.002);
+  const cv::Rect2f seen = *traced.boxes[1];
+  const cv::Rect2f with_cabinet(seen.x - 60, seen.y - 10, seen.width + 120, seen.height + 120);
+  mapping.take(std::move(traced.frame), from_the_front(0), {{"conveyor", with_cabinet, 1.0f}});
+  for (const Pose& X_WC : a_drive_past()) mapping.look(scene, X_WC, {1}, 0.002);
+  ASSERT_EQ(mapping.finish().size(), 1u);
+  expect_box(mapping.map[0].cuboid, conveyor(), 0.006, 0.5);
+}
+
 }  // namespace
 }  // namespace waretwin

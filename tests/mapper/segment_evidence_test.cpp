@@ -26,6 +26,7 @@ TEST(EvidenceSegmenter, TellsObjectFromOtherAndNamesTheSupport) {
   const SegmentedObject& object = found.objects[0];
   ASSERT_TRUE(object.support_W);
   EXPECT_NEAR(*object.support_W, 0.75, 0.003);
+  EXPECT_NEAR(object.ground_W, 0.0, 0.001);
   EXPECT_GT(count(object.rays, RayKind::object), 3000);
   EXPECT_GT(count(object.rays, RayKind::other), 3000);
   const Cuboid grown = {kScene.boxes[1].centre, kScene.boxes[1].yaw, kScene.boxes[1].size + Eigen::Vector3d::Constant(0.03), "world"};
