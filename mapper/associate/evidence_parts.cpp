@@ -16,12 +16,32 @@ struct CoarseCell {
   bool is_blind() const { return 2 * blind > cells; }
 };
 
+// Of the object's cells; 0 for none.
+double median_hits(const EvidenceGrid& grid, const std::vector<char>& mine) {
+  std::vector<int> hits;
+  std::size_t i = 0;
+  for (int z = 0; z < grid.size().z(); ++z) {
+    for (int y = 0; y < grid.size().y(); ++y) {
+      for (int x = 0; x < grid.size().x(); ++x, ++i) {
+        if (mine[i]) hits.push_back(grid.cell(x, y, z).hits());
+      }
+    }
+  }
+  if (hits.empty()) return 0.0;
+  const auto middle = hits.begin() + static_cast<std::ptrdiff_t>(hits.size() / 2);
+  std::nth_element(hits.begin(), middle, hits.end());
+  return *middle;
+}
+
 class CoarseGrid {
  public:
   CoarseGrid(const EvidenceGrid& grid, const std::vector<char>& mine, double step_m) {
     const int xy = std::max(1, static_cast<int>(std::lround(step_m / grid.cell_size().x())));
     step_ = {xy, xy, std::max(1, static_cast<int>(std::lround(step_m / grid.cell_size().z())))};
     size_ = ((grid.size() + step_ - Eigen::Vector3i::Ones()).array() / step_.array()).matrix();
+    // A few rays come back without depth at every edge; across a dark belt hardly one comes back with it.
+    constexpr double kDense = 0.3;
+    const double dense = kDense * median_hits(grid, mine);
     cells_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(size_.z()));
     std::size_t i = 0;
     for (int z = 0; z < grid.size().z(); ++z) {
@@ -30,7 +50,7 @@ class CoarseGrid {
           const EvidenceCell& cell = grid.cell(x, y, z);
           CoarseCell& coarse = at(of(x, y, z));
           ++coarse.cells;
-          if (cell.blind > cell.passed + cell.hits()) ++coarse.blind;
+          if (cell.blind > cell.passed + cell.hits() && cell.blind >= dense) ++coarse.blind;
           if (!mine[i]) continue;
           coarse.object += cell.object;
           coarse.other += cell.other;
