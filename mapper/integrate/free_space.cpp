@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "mapper/integrate/depth_pyramid.h"
+#include "mapper/integrate/frame_view.h"
 
 namespace waretwin {
 
@@ -102,16 +103,8 @@ std::vector<FreeBlock> find_free_space(const RgbdFrame& frame, const Intrinsics&
   const double depth = std::min(static_cast<double>(pyramid.largest()), config.max_depth_m);
   if (!(depth > 0.0)) return {};
 
-  // Box of blocks around the viewing pyramid.
   const double side = 8.0 * config.voxel_m;
-  Eigen::Vector3d low = X_WC.translation(), high = low;
-  for (const double u : {-0.5, intrinsics.width - 0.5}) {
-    for (const double v : {-0.5, intrinsics.height - 0.5}) {
-      const Eigen::Vector3d corner = X_WC * (intrinsics.ray(u, v) * depth);
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
+  const auto [low, high] = viewing_box(intrinsics, X_WC, depth);
   Eigen::Vector3i first, count;
   for (int k = 0; k < 3; ++k) {
     first[k] = static_cast<int>(std::floor(low[k] / side));

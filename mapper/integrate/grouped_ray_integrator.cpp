@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "mapper/integrate/frame_view.h"
 #include "mapper/integrate/free_space.h"
 #include "mapper/integrate/point_groups.h"
 
@@ -237,11 +238,7 @@ void record_free_space(const std::vector<FreeBlock>& free_blocks, TsdfVolume& vo
 
 void GroupedRayIntegrator::integrate(const RgbdFrame& frame, const Intrinsics& intrinsics, const std::vector<std::int32_t>& labels,
                                      const Pose& X_WC, TsdfVolume& volume) {
-  const auto pixels = static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
-  WARETWIN_CHECK(frame.depth.type() == CV_32FC1 && frame.colour.type() == CV_8UC3, "frame of another type");
-  WARETWIN_CHECK(frame.depth.cols == intrinsics.width && frame.depth.rows == intrinsics.height && frame.colour.size() == frame.depth.size(),
-                 "frame of another size than its intrinsics");
-  WARETWIN_CHECK(labels.empty() || labels.size() == pixels, "one label per pixel");
+  check_frame(frame, intrinsics, labels);
   volume.expect_same_grid(config_);
   integrate_surfaces(group_points(frame, intrinsics, labels, X_WC, config_), X_WC.translation(), config_, volume);
   if (config_.carve) record_free_space(find_free_space(frame, intrinsics, X_WC, config_), volume);

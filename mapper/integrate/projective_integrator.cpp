@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "mapper/integrate/depth_pyramid.h"
+#include "mapper/integrate/frame_view.h"
 #include "mapper/integrate/surface_patches.h"
 
 namespace waretwin {
@@ -345,16 +346,8 @@ class Projecting {
 
 std::vector<Candidate> find_blocks(const Projecting& projecting, const Intrinsics& intrinsics, const Pose& X_WC, double depth,
                                    const TsdfConfig& config) {
-  // Box of blocks around the viewing pyramid.
   const double side = 8.0 * config.voxel_m;
-  Eigen::Vector3d low = X_WC.translation(), high = low;
-  for (const double u : {-0.5, intrinsics.width - 0.5}) {
-    for (const double v : {-0.5, intrinsics.height - 0.5}) {
-      const Eigen::Vector3d corner = X_WC * (intrinsics.ray(u, v) * depth);
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
+  const auto [low, high] = viewing_box(intrinsics, X_WC, depth);
   const double reach = side * static_cast<double>(TsdfVolume::kMaxBlockIndex);
   for (int k = 0; k < 3; ++k) {
     if (low[k] > -reach && high[k] < reach) continue;
@@ -417,11 +410,7 @@ void update_blocks(const Projecting& projecting, const std::vector<Candidate>& c
 
 void ProjectiveIntegrator::integrate(const RgbdFrame& frame, const Intrinsics& intrinsics, const std::vector<std::int32_t>& labels,
                                      const Pose& X_WC, TsdfVolume& volume) {
-  const auto pixels = static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
-  WARETWIN_CHECK(frame.depth.type() == CV_32FC1 && frame.colour.type() == CV_8UC3, "frame of another type");
-  WARETWIN_CHECK(frame.depth.cols == intrinsics.width && frame.depth.rows == intrinsics.height && frame.colour.size() == frame.depth.size(),
-                 "frame of another size than its intrinsics");
-  WARETWIN_CHECK(labels.empty() || labels.size() == pixels, "one label per pixel");
+  check_frame(frame, intrinsics, labels);
   volume.expect_same_grid(config_);
   const DepthPyramid pyramid(frame.depth);
   const double depth = std::min(static_cast<double>(pyramid.largest()), config_.max_depth_m);
