@@ -104,11 +104,13 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
   }
 
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // -overlap, object, mapped
+  std::vector<double> floors;                                       // of the mapped objects
+  for (const MappedObject& mapped : map) floors.push_back(support_of(tracks_.at(mapped.id)));
   for (std::size_t i = 0; i < objects.size(); ++i) {
     for (std::size_t k = 0; k < map.size(); ++k) {
       if (objects[i].detection.class_name != map[k].class_name) continue;
       const double margin = std::min(config_.overlap_margin_m, 0.25 * map[k].cuboid.size.head<2>().minCoeff());
-      const double overlap = share_inside(objects[i].points_W, map[k].cuboid, support_of(tracks_.at(map[k].id)), margin);
+      const double overlap = share_inside(objects[i].points_W, map[k].cuboid, floors[k], margin);
       if (overlap >= config_.min_overlap) pairs.emplace_back(-overlap, i, k);
     }
   }
@@ -120,8 +122,7 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
     if (partner[i] != kNone) continue;
     if (used[k]) {
       // A neighbour lies in the margin, a second box in the object itself.
-      if (share_inside(objects[i].points_W, map[k].cuboid, support_of(tracks_.at(map[k].id)), 0.0) > config_.same_object_share)
-        contested[i] = 1;
+      if (share_inside(objects[i].points_W, map[k].cuboid, floors[k], 0.0) > config_.same_object_share) contested[i] = 1;
       continue;
     }
     partner[i] = k;
@@ -217,9 +218,8 @@ void EvidenceAssociator::count_misses(const AssociationContext& context, const O
   if (context.tells_nothing) return;
   for (const MappedObject& mapped : map) {
     if (mapped.last_frame == context.frame_id) continue;
-    const auto track = tracks_.find(mapped.id);
-    if (track == tracks_.end() || detected_near(mapped, context) || !in_full_view(mapped.cuboid, context)) continue;
-    ++track->second.misses;
+    if (detected_near(mapped, context) || !in_full_view(mapped.cuboid, context)) continue;
+    ++tracks_.at(mapped.id).misses;
   }
 }
 
@@ -236,8 +236,8 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
       map.erase(map.begin() + static_cast<std::ptrdiff_t>(k));
       MappedObject& stays = map[i];
       const int older = std::min(stays.id, gone.id), newer = std::max(stays.id, gone.id);
-      Track merged = std::move(tracks_.try_emplace(stays.id, config_).first->second);
-      const Track& other = tracks_.try_emplace(gone.id, config_).first->second;
+      Track merged = std::move(tracks_.at(stays.id));
+      const Track& other = tracks_.at(gone.id);
       merged.grid.add(other.grid);
       merged.misses += other.misses;
       merged.supports.insert(merged.supports.end(), other.supports.begin(), other.supports.end());
