@@ -10,7 +10,7 @@ namespace waretwin {
 struct TruthDetectorConfig {
   int min_pixels = 2000;           // of the object in the picture
   int min_depth_pixels = 200;      // of these, with depth
-  double min_visible_share = 0.8;  // visible box's area over that of the whole object's box, parts beyond the picture included
+  double min_visible_share = 0.3;  // visible box's area over that of the whole object's box, parts beyond the picture included
   void visit(Fields& f);
 };
 

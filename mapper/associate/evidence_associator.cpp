@@ -173,6 +173,7 @@ void EvidenceAssociator::update(MappedObject& mapped, Track& track, const Segmen
   mapped.last_frame = context.frame_id;
   mapped.box = object.detection.box;
   ++mapped.observations;
+  track.views.add({context.X_WC, context.intrinsics, object.detection.box});
   if (object.support_W) track.supports.push_back(static_cast<float>(*object.support_W));
   track.grounds.push_back(static_cast<float>(object.ground_W));
   if (static_cast<int>(track.pending.size()) < config_.shape_every && static_cast<int>(track.grounds.size()) <= config_.shape_every) {
@@ -211,7 +212,7 @@ void EvidenceAssociator::shape(MappedObject& mapped, Track& track) const {
   track.shaped_at = mapped.observations;
   // An archive holds no evidence: a resumed object keeps its cuboid until about as much is known of it again.
   if (2 * static_cast<int>(track.grounds.size()) < track.resumed) return;
-  if (const auto cuboid = evidence_cuboid(track.grid, support_of(track), config_)) mapped.cuboid = *cuboid;
+  if (const auto cuboid = evidence_cuboid(track.grid, track.views, support_of(track), config_)) mapped.cuboid = *cuboid;
 }
 
 void EvidenceAssociator::count_misses(const AssociationContext& context, const ObjectList& map) {
@@ -223,12 +224,31 @@ void EvidenceAssociator::count_misses(const AssociationContext& context, const O
   }
 }
 
+// What was seen beside the one is beside what it becomes.
+void EvidenceAssociator::keep_apart(int gone, int stays) {
+  std::set<std::pair<int, int>> renamed;
+  for (auto [a, b] : apart_) {
+    if (a == gone) a = stays;
+    if (b == gone) b = stays;
+    renamed.insert(std::minmax(a, b));
+  }
+  apart_ = std::move(renamed);
+}
+
+bool EvidenceAssociator::explains(const MappedObject& one, const MappedObject& other) const {
+  const BoxViews& views = tracks_.at(other.id).views;
+  if (views.empty()) return false;
+  const double match = views.match(views.shown(one.cuboid));
+  return match >= config_.same_boxes_match && match >= views.match(views.shown(other.cuboid));
+}
+
 void EvidenceAssociator::merge_overlapping(ObjectList& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     for (std::size_t k = i + 1; k < map.size();) {
       const double smaller = std::min(map[i].cuboid.volume(), map[k].cuboid.volume());
       if (map[i].class_name != map[k].class_name || smaller <= 0.0 || apart_.contains(std::minmax(map[i].id, map[k].id)) ||
-          intersection_volume(map[i].cuboid, map[k].cuboid) <= config_.merge_overlap * smaller) {
+          (intersection_volume(map[i].cuboid, map[k].cuboid) <= config_.merge_overlap * smaller && !explains(map[i], map[k]) &&
+           !explains(map[k], map[i]))) {
         ++k;
         continue;
       }
@@ -239,6 +259,7 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
       Track merged = std::move(tracks_.at(stays.id));
       const Track& other = tracks_.at(gone.id);
       merged.grid.add(other.grid);
+      merged.views.add(other.views);
       merged.misses += other.misses;
       merged.supports.insert(merged.supports.end(), other.supports.begin(), other.supports.end());
       merged.grounds.insert(merged.grounds.end(), other.grounds.begin(), other.grounds.end());
@@ -247,6 +268,7 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
       merged.resumed = std::max(merged.resumed, other.resumed);
       tracks_.erase(stays.id);
       tracks_.erase(gone.id);
+      keep_apart(newer, older);
       stays.id = older;
       stays.first_frame = std::min(stays.first_frame, gone.first_frame);
       stays.last_frame = std::max(stays.last_frame, gone.last_frame);

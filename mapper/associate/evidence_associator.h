@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/associate/associator.h"
+#include "mapper/associate/box_views.h"
 #include "mapper/associate/evidence_config.h"
 #include "mapper/associate/evidence_grid.h"
 
@@ -14,8 +15,9 @@ namespace waretwin {
 
 // A detection is the mapped object of its class that holds the largest share of its points, at least min_overlap; within a frame pairs are
 // one to one. Its rays are added to the object's evidence grid, from which the cuboid is searched every shape_every observations and at
-// the end, ever less often as observations add up. Mapped objects that come to share most of the smaller one's volume become one: the older
-// id stays. At the end objects seen too seldom, and those that frames in full view of them did not detect, are taken out.
+// the end, ever less often as observations add up. Mapped objects that come to share most of the smaller one's volume, or of which one
+// explains the other's boxes, become one: the older id stays. At the end objects seen too seldom, and those that frames in full view of
+// them did not detect, are taken out.
 class EvidenceAssociator : public Associator {
  public:
   explicit EvidenceAssociator(const EvidenceConfig& config) : config_(config) {}
@@ -28,6 +30,7 @@ class EvidenceAssociator : public Associator {
   struct Track {
     explicit Track(const EvidenceConfig& config) : grid(config) {}
     EvidenceGrid grid;
+    BoxViews views;
     std::vector<float> supports;  // heights, one a frame that found one
     std::vector<float> grounds;   // heights, one a frame
     // The first frames, until the support is settled: what a single frame takes for it may be wrong.
@@ -42,6 +45,9 @@ class EvidenceAssociator : public Associator {
   void add_rays(Track& track, const SegmentedObject& object) const;
   void shape(MappedObject& mapped, Track& track) const;
   void count_misses(const AssociationContext& context, const ObjectList& map);
+  // True where the other's boxes are matched by this one's cuboid, and no worse than by its own: clutter that was taken for it.
+  bool explains(const MappedObject& one, const MappedObject& other) const;
+  void keep_apart(int gone, int stays);
   void merge_overlapping(ObjectList& map);
 
   EvidenceConfig config_;

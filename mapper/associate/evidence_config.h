@@ -15,9 +15,11 @@ struct EvidenceConfig {
   double max_extent_m = 6.0;     // nothing larger is an object
   double min_hits_share = 0.15;  // cells with fewer hits than this share of the median cell's are noise
   int min_hits = 3;
+  double outside_weight = 3.0;      // a hit seen outside the box says so many times as much about a cell as one inside
   double join_m = 0.02;             // parts nearer than this are one
   double bridge_m = 0.5;            // so are parts up to this far away with nothing but rays without depth between them (a dark belt) ...
   double bridge_share = 0.8;        // ... if this share of the hits on them at least is the object's
+  double bridge_gain = 0.01;        // ... and the object's boxes are matched better by so much 2D IoU
   double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
   double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
   double top_area_share = 0.04;     // ... and at least this share of it
@@ -31,6 +33,7 @@ struct EvidenceConfig {
   double overlap_margin_m = 0.05;
   double same_object_share = 0.6;  // a detection with more of its points inside an object that has one already is no other object
   double merge_overlap = 0.5;      // of the smaller of two mapped cuboids, above which they are one object
+  double same_boxes_match = 0.5;   // so are two of which one's cuboid matches the other's boxes so well, and better than its own
   int min_observations = 3;        // fewer are no object at the end
   double min_presence = 0.3;       // detections over frames in which the object was in full view
 
@@ -44,9 +47,12 @@ struct EvidenceConfig {
     f("max_extent_m", max_extent_m, "nothing larger is an object", {.min = 0.1, .max = 100});
     f("min_hits_share", min_hits_share, "cells with fewer hits than this share of the median cell's are noise", {.min = 0, .max = 1});
     f("min_hits", min_hits, "and cells with fewer than these", {.min = 1, .max = 1000});
+    f("outside_weight", outside_weight, "a hit seen outside the box says so many times as much about a cell as one inside",
+      {.min = 0, .max = 1000});
     f("join_m", join_m, "parts nearer than this belong together", {.min = 0.001, .max = 1});
     f("bridge_m", bridge_m, "so do parts up to this far away with nothing but rays without depth between them", {.min = 0, .max = 5});
     f("bridge_share", bridge_share, "if at least this share of the hits on them is the object's", {.min = 0, .max = 1});
+    f("bridge_gain", bridge_gain, "and the mean 2D IoU with the object's boxes rises by at least this much", {.min = 0, .max = 1});
     f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
       {.min = 0, .max = 1});
     f("top_area_m2", top_area_m2, "the top is the highest level that at least this much of the footprint reaches", {.min = 0, .max = 10});
@@ -64,6 +70,8 @@ struct EvidenceConfig {
     f("same_object_share", same_object_share,
       "a detection with more of its points inside an object that has its own in this frame is no other object", {.min = 0, .max = 1});
     f("merge_overlap", merge_overlap, "mapped objects that share more of the smaller one's volume are one", {.min = 0, .max = 1});
+    f("same_boxes_match", same_boxes_match, "so are two of which one's cuboid matches the other's boxes so well, and better than its own",
+      {.min = 0, .max = 1});
     f("min_observations", min_observations, "objects seen in fewer frames are taken out at the end", {.min = 1, .max = 1000});
     f("min_presence", min_presence,
       "share of the frames with the object in full view in which it was detected, below which it is taken out", {.min = 0, .max = 1});

@@ -1,15 +1,25 @@
 // Which of the filled cells of an object's grid are one object.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "mapper/associate/box_views.h"
 #include "mapper/associate/evidence_grid.h"
 
 namespace waretwin {
 
-// `mine`: one flag a cell of the grid (x fastest, then y, then z), set where the cell is filled and the object's. Unsets all but the part
-// with the most hits, connected over gaps of join_m, and the parts that belong to it across a gap from which rays bring no depth: two rails
-// with a dark belt between them.
-void keep_one_object(const EvidenceGrid& grid, std::vector<char>& mine, const EvidenceConfig& config);
+// What a cell is taken for. `other` is filled, too, but not the object's; what lies no higher than the support is `none`.
+enum class CellOwner : std::uint8_t { none, object, other };
+
+// Of the object's cells; 0 for none. `owners`: one a cell of the grid, x fastest, then y, then z.
+int median_hits(const EvidenceGrid& grid, const std::vector<CellOwner>& owners);
+
+// The object's cells that are connected over gaps of join_m are a part. Makes `none` of all but
+//  - the part that matches the boxes best in which the object was detected, and is not a piece of what goes on outside them (without
+//    boxes: the one with the most hits);
+//  - parts that belong to it across a gap from which rays bring no depth (two rails with a dark belt between them), as long as the boxes
+//    are matched better with them than without.
+void keep_one_object(const EvidenceGrid& grid, std::vector<CellOwner>& owners, const BoxViews& views, const EvidenceConfig& config);
 
 }  // namespace waretwin

@@ -14,41 +14,45 @@ namespace waretwin {
 
 namespace {
 
-// Cells that are filled and the object's.
-std::vector<char> object_cells(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
+// A ray that ends in the object ends in its box, whatever the view; one that ends in something else may, if that stands near the
+// object: being seen outside says more.
+bool is_object(const EvidenceCell& cell, const EvidenceConfig& config) {
+  return cell.object > 0 && cell.object > config.outside_weight * cell.other && cell.hits() >= cell.passed;
+}
+
+std::vector<CellOwner> owners_of(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
   const Eigen::Vector3i n = grid.size();
-  const auto total = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) * static_cast<std::size_t>(n.z());
-  std::vector<char> mine(total, 0);
-  std::vector<int> hits;
+  const double lowest = support_z + config.foot_clearance_m;
+  std::vector<CellOwner> owners(static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) * static_cast<std::size_t>(n.z()),
+                                CellOwner::none);
   std::size_t i = 0;
   for (int z = 0; z < n.z(); ++z) {
     const double bottom = grid.origin().z() + z * grid.cell_size().z();
     for (int y = 0; y < n.y(); ++y) {
       for (int x = 0; x < n.x(); ++x, ++i) {
         const EvidenceCell& cell = grid.cell(x, y, z);
-        if (cell.object == 0 || cell.object <= cell.other || cell.hits() < cell.passed ||
-            bottom + cell.z_sum / cell.object <= support_z + config.foot_clearance_m) {
-          continue;
+        if (is_object(cell, config)) {
+          if (bottom + cell.z_sum / cell.object > lowest) owners[i] = CellOwner::object;
+        } else if (cell.hits() >= std::max<int>(config.min_hits, cell.passed) && bottom > lowest) {
+          owners[i] = CellOwner::other;
         }
-        mine[i] = 1;
-        hits.push_back(cell.hits());
       }
     }
   }
-  if (hits.empty()) return mine;
-  const auto middle = hits.begin() + static_cast<std::ptrdiff_t>(hits.size() / 2);
-  std::nth_element(hits.begin(), middle, hits.end());
-  const int fewest = std::max(std::min(config.min_hits, *middle), static_cast<int>(config.min_hits_share * *middle));
+  const int middle = median_hits(grid, owners);
+  const int fewest = std::max(std::min(config.min_hits, middle), static_cast<int>(config.min_hits_share * middle));
   i = 0;
   for (int z = 0; z < n.z(); ++z) {
     for (int y = 0; y < n.y(); ++y) {
       for (int x = 0; x < n.x(); ++x, ++i) {
-        if (mine[i] && grid.cell(x, y, z).hits() < fewest) mine[i] = 0;
+        if (owners[i] == CellOwner::object && grid.cell(x, y, z).hits() < fewest) owners[i] = CellOwner::none;
       }
     }
   }
-  return mine;
+  return owners;
 }
+
+constexpr double kSkirt = 0.05;  // metres
 
 struct OutlineCell {
   Eigen::Vector2d centre;
@@ -61,13 +65,13 @@ struct Outline {
   double lowest = std::numeric_limits<double>::infinity();
 };
 
-Outline outline_of(const EvidenceGrid& grid, const std::vector<char>& mine) {
+Outline outline_of(const EvidenceGrid& grid, const std::vector<CellOwner>& owners) {
   const Eigen::Vector3i n = grid.size();
   const auto plane = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y());
   const auto is_mine = [&](int x, int y, int z) {
     return x >= 0 && y >= 0 && x < n.x() && y < n.y() &&
-           mine[static_cast<std::size_t>(z) * plane + static_cast<std::size_t>(y) * static_cast<std::size_t>(n.x()) +
-                static_cast<std::size_t>(x)];
+           owners[static_cast<std::size_t>(z) * plane + static_cast<std::size_t>(y) * static_cast<std::size_t>(n.x()) +
+                  static_cast<std::size_t>(x)] == CellOwner::object;
   };
   Outline outline;
   const double slice = grid.cell_size().z();
@@ -177,7 +181,7 @@ bool has_feet(const EvidenceGrid& grid, const Rectangle& r, double support_z, co
     for (int y = 0; y < grid.size().y(); ++y) {
       for (int x = 0; x < grid.size().x(); ++x) {
         const EvidenceCell& c = grid.cell(x, y, z);
-        if (c.object == 0 || c.object <= c.other || c.hits() < c.passed) continue;
+        if (!is_object(c, config)) continue;
         const Eigen::Vector2d p(grid.origin().x() + (x + 0.5) * cell.x(), grid.origin().y() + (y + 0.5) * cell.y());
         const double u = p.dot(along), v = p.dot(across);
         if (u >= r.x.low && u <= r.x.high && v >= r.y.low && v <= r.y.high) ++found;
@@ -189,14 +193,18 @@ bool has_feet(const EvidenceGrid& grid, const Rectangle& r, double support_z, co
 
 }  // namespace
 
-std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, double support_z, const EvidenceConfig& config) {
+std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, const BoxViews& views, double support_z, const EvidenceConfig& config) {
   if (grid.empty()) return std::nullopt;
-  std::vector<char> mine = object_cells(grid, support_z, config);
-  keep_one_object(grid, mine, config);
-  Outline outline = outline_of(grid, mine);
+  std::vector<CellOwner> owners = owners_of(grid, support_z, config);
+  keep_one_object(grid, owners, views, config);
+  Outline outline = outline_of(grid, owners);
   if (outline.tops.empty()) return std::nullopt;
 
   const double cell = grid.cell_size().x();
+  // The lowest layer of an object that is higher takes no part: what noise lifts off the floor inside the box looks like it.
+  const double skirt = support_z + std::min(kSkirt, 0.25 * (*std::max_element(outline.tops.begin(), outline.tops.end()) - support_z));
+  const auto in_skirt = [&](const OutlineCell& c) { return grid.origin().z() + c.z * grid.cell_size().z() < skirt; };
+  if (!std::all_of(outline.border.begin(), outline.border.end(), in_skirt)) std::erase_if(outline.border, in_skirt);
   const Rectangle r = smallest_rectangle(outline.border, cell, grid.cell_size().z(), grid.size().z(), config);
   const double area = std::max(config.top_area_m2, config.top_area_share * cell * cell * static_cast<double>(outline.tops.size()));
   const std::size_t nth = std::min((outline.tops.size() - 1) / 2, static_cast<std::size_t>(area / (cell * cell)));

@@ -159,6 +159,34 @@ TEST(Evidence, BridgesABeltThatGivesNoDepth) {
   expect_box(mapping.map[0].cuboid, box(0, -0.03, 0.75, 0, 0.60, 0.38, 0.15), 0.005, 0.4);
 }
 
+// A roller bed on legs: two rails, rollers with gaps between them, four legs. Its parts hang together nowhere.
+std::vector<Cuboid> roller_bed(double y) {
+  std::vector<Cuboid> parts{box(0, y - 0.22, 0.6, 0, 1.2, 0.04, 0.1), box(0, y + 0.22, 0.6, 0, 1.2, 0.04, 0.1)};
+  for (int i = 0; i < 7; ++i) parts.push_back(box(-0.54 + 0.18 * i, y, 0.64, 0, 0.05, 0.34, 0.05));
+  for (const double x : {-0.5, 0.5}) {
+    for (const double side : {-0.22, 0.22}) parts.push_back(box(x, y + side, 0, 0, 0.05, 0.04, 0.56));
+  }
+  return parts;
+}
+
+TEST(Evidence, TellsAnOpenFrameFromTheWallSeenThroughIt) {
+  TracedScene scene{roller_bed(0.0), {}, true};
+  const std::size_t parts = scene.boxes.size();
+  scene.boxes.push_back(box(0, 0.5, 0, 0, 5.0, 0.1, 1.5));
+  EvidenceMapping mapping;
+  for (const double degrees : {-35.0, -20.0, -10.0, 0.0, 10.0, 20.0, 35.0}) {
+    const Pose X_WC = from_the_front(degrees, 1.2);
+    test::TracedFrame traced = test::trace(scene, mapping.intrinsics(), X_WC, 0.002);
+    cv::Rect2f whole = *traced.boxes[0];
+    for (std::size_t i = 1; i < parts; ++i) {
+      if (traced.boxes[i]) whole |= *traced.boxes[i];
+    }
+    mapping.take(std::move(traced.frame), X_WC, {{"conveyor", whole, 1.0f}});
+  }
+  ASSERT_EQ(mapping.finish().size(), 1u);
+  expect_box(mapping.map[0].cuboid, box(0, 0, 0, 0, 1.2, 0.48, 0.7), 0.012, 0.5);
+}
+
 TEST(Evidence, MergesHalves) {
   const TracedScene scene{{cabinet(), conveyor()}, {}, true};
   EvidenceMapping mapping;
