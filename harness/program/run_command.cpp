@@ -74,7 +74,7 @@ int run(const RunOptions& options) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     });
   }
-  write_closed_loop(*folder, result);
+  write_closed_loop(*folder, result, config.output);
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
   for (const Explanation& line : result.score.objects.explanations) {
