@@ -10,6 +10,7 @@ packages=(
   libembree-dev libtinygltf-dev libeigen3-dev libopencv-dev libpcl-dev libbullet-dev
   libtbb-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libspdlog-dev librandom123-dev
   libgtest-dev libbenchmark-dev zlib1g-dev
+  liboctomap-dev  # optional: without it no octomap.bt is written
 )
 for argument in "$@"; do
   case "$argument" in

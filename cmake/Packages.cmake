@@ -51,3 +51,15 @@ add_library(waretwin_tinygltf INTERFACE)
 add_library(waretwin::tinygltf ALIAS waretwin_tinygltf)
 # The package ships the compiled library; its header still wants nlohmann-json.
 target_link_libraries(waretwin_tinygltf INTERFACE TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json)
+
+# The export for planners, where it is installed (liboctomap-dev).
+find_package(octomap QUIET)
+if(octomap_FOUND)
+  add_library(waretwin_octomap INTERFACE)
+  add_library(waretwin::octomap ALIAS waretwin_octomap)
+  target_include_directories(waretwin_octomap SYSTEM INTERFACE ${OCTOMAP_INCLUDE_DIRS})
+  target_link_libraries(waretwin_octomap INTERFACE ${OCTOMAP_LIBRARIES})
+  target_compile_definitions(waretwin_octomap INTERFACE WARETWIN_OCTOMAP)
+else()
+  message(STATUS "OctoMap not found: no octomap.bt is written (liboctomap-dev)")
+endif()

@@ -60,7 +60,7 @@ int map(const MapOptions& options) {
     result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
   }
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
-  write_mapping(folder, result, options.recording, config.mapper.profile);
+  write_mapping(folder, result, options.recording, config.mapper.profile, config.output);
 
   for (const ListedObject& object : listed(result.map.objects)) {
     const Cuboid& c = object.cuboid;

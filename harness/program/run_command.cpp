@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/error.h"
 #include "harness/program/common_options.h"
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
@@ -55,6 +56,10 @@ void print_summary(const char* name, const ScoreSummary& s) {
 int run(const RunOptions& options) {
   options.common.apply();
   const RunConfig config = configure(options);
+  if (options.budget && !config.resume.empty()) {
+    throw Error("--budget: the configuration goes on from a map (resume: " + config.resume +
+                "); expected none, for an earlier drive's errors belong to no stage of this one");
+  }
   const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
   std::optional<RunFolder> folder;
   // After all that can be refused, so that an earlier run's results outlive a mistake; before the drive, so that a folder that cannot be
@@ -74,7 +79,7 @@ int run(const RunOptions& options) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     });
   }
-  write_closed_loop(*folder, result);
+  write_closed_loop(*folder, result, config.output);
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
   for (const Explanation& line : result.score.objects.explanations) {

@@ -10,6 +10,7 @@
 #include "harness/truth/truth_detector.h"
 #include "harness/truth/truth_frames.h"
 #include "mapper/mapper_config.h"
+#include "mapper/output/output_config.h"
 #include "scenes/scenario.h"
 #include "sim/simulated_stream.h"
 
@@ -31,6 +32,7 @@ struct RunConfig {
   TruthDetectorConfig truth_detector;
   TruthFramesConfig truth_frames;
   ScoringRules score;
+  OutputConfig output;
   std::string resume;  // the map.waretwin to go on from; empty: a new map
 
   void visit(Fields& f);

@@ -13,6 +13,7 @@
 #include "mapper/integrate/tsdf_volume.h"
 #include "mapper/output/map_archive.h"
 #include "mapper/output/map_files.h"
+#include "mapper/output/octomap_file.h"
 
 namespace waretwin {
 
@@ -63,6 +64,13 @@ double picture_ceiling(const SurfaceMesh& mesh) {
 
 const std::vector<std::string> kMapFiles = {"cuboids.json",   "map.glb",   "map.ply",        "cloud.ply",  "map.waretwin", "occupancy.pgm",
                                             "occupancy.yaml", "esdf.nrrd", "trajectory.tum", "timing.csv", "config.yaml"};
+constexpr const char* kOctomap = "octomap.bt";
+
+std::vector<std::string> map_files(const OutputConfig& output) {
+  std::vector<std::string> names = kMapFiles;
+  if (output.wants_octomap()) names.emplace_back(kOctomap);
+  return names;
+}
 
 }  // namespace
 
@@ -133,7 +141,7 @@ void write_trajectory(RunFolder& folder, const ObjectMap& map, const Pose& X_BF)
   if (!covariances.empty()) folder.write("trajectory_covariance.csv", covariances);
 }
 
-std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene) {
+std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output) {
   const ObjectMap& map = mapping.map;
   WARETWIN_CHECK(map.volume != nullptr, "a map has a volume");
   const bool upright = map.X_RW.isApprox(Pose::Identity(), 1e-12);
@@ -152,6 +160,11 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   save_map(folder.file("map.waretwin"), objects, *map.volume, map.frames_before + static_cast<int>(map.frames.size()));
   write_occupancy(folder.file("occupancy.pgm"), make_occupancy_grid(*map.volume, OccupancyConfig{}));
   write_distance_field(folder.file("esdf.nrrd"), make_distance_field(*map.volume, DistanceFieldConfig{}));
+  if (output.wants_octomap()) {
+    write_octomap(folder.file(kOctomap), *map.volume);
+  } else {
+    folder.remove(kOctomap);
+  }
   write_cuboids(folder.file("cuboids.json"), upright ? "world" : "upright", objects);
   write_trajectory(folder, map, Pose::Identity());
   folder.write("timing.csv", timing_csv(mapping.frames));
@@ -185,7 +198,7 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   return pictures;
 }
 
-void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
+void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const OutputConfig& output) {
   const RunScore& score = result.score;
   MapScene scene;
   scene.mapped = result.mapped;
@@ -193,7 +206,7 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   scene.trajectory = result.trajectory;
   scene.true_trajectory = result.true_trajectory;
   ReportPage page;
-  page.pictures = write_map(folder, result.mapping, std::move(scene));
+  page.pictures = write_map(folder, result.mapping, std::move(scene), output);
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
   for (const char* earlier : {"truth_frames.jsonl", "budget.md"}) folder.remove(earlier);
@@ -224,7 +237,7 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result) {
   if (score.motion) {
     for (const RobotContact& contact : score.motion->contacts) page.facts.push_back("Error: " + contact_text(contact));
   }
-  page.files = kMapFiles;
+  page.files = map_files(output);
   for (const char* name : {"truth.json", "trajectory_truth.tum", "table6.md", "score.json"}) page.files.emplace_back(name);
   if (!result.truth_frames.empty()) page.files.emplace_back("truth_frames.jsonl");
   for (const auto& entry : result.sensor_poses) page.files.push_back("truth_poses/" + entry.first);
@@ -236,6 +249,7 @@ void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std:
   for (const std::string& name : kMapFiles) {
     if (name != "config.yaml") folder.remove(name);
   }
+  folder.remove(kOctomap);
   write_trajectory(folder, mapping.map, *mapping.X_BL);
   MapScene scene;
   scene.trajectory = stamped(mapping.map.trajectory);
@@ -250,7 +264,8 @@ void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std:
   folder.write("report.html", report_html(page));
 }
 
-void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
+void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile,
+                   const OutputConfig& output) {
   if (mapping.X_BL) {
     write_laser_log(folder, mapping, source, profile);
     return;
@@ -260,7 +275,7 @@ void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::s
   scene.trajectory = stamped(mapping.map.trajectory);
   ReportPage page;
   page.mapped = scene.mapped;
-  page.pictures = write_map(folder, mapping, std::move(scene));
+  page.pictures = write_map(folder, mapping, std::move(scene), output);
   page.title = "waretwin: map of " + source;
   page.subtitle = "Profile " + profile + ", digest " + digest_of(mapping.map);
   page.timing_ms = summarise_stages(mapping.frames);
@@ -268,7 +283,7 @@ void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::s
                 std::to_string(mapping.map.frames_without_pose) + " without a pose"};
   for (const auto& [reason, count] : mapping.map.rejected)
     page.facts.push_back("Not segmented: " + reason + ", " + std::to_string(count) + " times");
-  page.files = kMapFiles;
+  page.files = map_files(output);
   folder.write("report.html", report_html(page));
 }
 

@@ -8,6 +8,7 @@
 
 #include "harness/run/closed_loop.h"
 #include "harness/run/report.h"
+#include "mapper/output/output_config.h"
 
 namespace waretwin {
 
@@ -32,17 +33,18 @@ class RunFolder {
 };
 
 // All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, pictures of `scene`, which gets the mesh of the map.
-// Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy and
-// map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.
+// Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy,
+// octomap.bt and map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.
 // Returns the pictures for the report.
-std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene);
+std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output);
 
 // The same with truth, Table 6, report.html, and score.json at the very end.
-void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result);
+void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const OutputConfig& output);
 
 // What `waretwin map` leaves behind: write_map and report.html. Of a laser log (no camera) it is the trajectory, as poses of the laser
 // (X_WL), its picture, and report.html.
-void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile);
+void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile,
+                   const OutputConfig& output);
 
 // A row for each pose that has a covariance: of the vehicle's x, y and yaw in the map's world. Empty where none has one.
 std::string covariance_csv(const std::vector<TrajectoryPoint>& trajectory);

@@ -83,6 +83,14 @@ class Reader {
     return value;
   }
 
+  // Of an odometry's place. Steps between larger numbers lose their millimetres, and those between the largest are infinite.
+  double metres(std::size_t i) const {
+    constexpr double kMost = 1e9;
+    const double value = number(i);
+    if (!(std::abs(value) <= kMost)) throw Error(file_, line_, "'" + words_[i] + "' is no place; expected metres from -1e9 to 1e9");
+    return value;
+  }
+
   void take_scan() {
     constexpr double kMostBeams = 100000;
     const double announced = words_.size() > 1 ? number(1) : 0.0;
@@ -118,7 +126,7 @@ class Reader {
       throw Error(file_, line_,
                   "an ODOM line has " + std::to_string(words_.size()) + " words; expected 10: ODOM x y theta tv rv accel stamp host stamp");
     }
-    const Pose X_here = make_upright_pose(number(1), number(2), 0.0, number(3));
+    const Pose X_here = make_upright_pose(metres(1), metres(2), 0.0, number(3));
     const Stamp stamp = parse_text_stamp(file_, line_, words_[7]);
     if (stamp != 0) {
       if (last_line_) X_OB_ = X_OB_ * (last_line_->inverse() * X_here);

@@ -70,7 +70,7 @@ Stamp parse_text_stamp(const std::filesystem::path& file, int line, const std::s
   std::int64_t seconds = 0;
   std::int64_t nanoseconds = 0;
   const auto whole = std::from_chars(word.data() + (negative ? 1 : 0), word.data() + dot, seconds);
-  constexpr std::int64_t kMost = 9'000'000'000;
+  constexpr std::int64_t kMost = 4'500'000'000;  // the year 2112; the time between any two stamps fits into 64 bits of nanoseconds
   if (!digits || whole.ec != std::errc() || whole.ptr != word.data() + dot || seconds < 0 || seconds > kMost) {
     // Exponents are rare in stamps, but legal.
     const double value = finite_number(file, line, word);

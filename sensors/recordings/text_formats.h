@@ -24,7 +24,7 @@ std::vector<TextLine> read_text_lines(const std::filesystem::path& file);
 
 // A word as a number; infinities and NaN are read as such (lost poses). Throws Error naming file, line and word.
 double parse_text_number(const std::filesystem::path& file, int line, const std::string& word);
-// A word as seconds, exact to the nanosecond (a double would lose digits of a time since the epoch).
+// A word as seconds, exact to the nanosecond (a double would lose digits of a time since the epoch). Throws Error beyond +- 4.5e9 s.
 Stamp parse_text_stamp(const std::filesystem::path& file, int line, const std::string& word);
 
 std::string stamp_text(Stamp stamp);  // seconds with nine decimals

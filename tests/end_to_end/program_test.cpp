@@ -209,6 +209,36 @@ TEST(Program, ReportsWhatTheVehicleTouches) {
   EXPECT_LT(std::abs(contact["y_m"].get<double>() + 1.6), 0.4) << "at the cabinet's front";
 }
 
+TEST(Program, WritesAnOctomapWhereItCan) {
+#ifdef WARETWIN_OCTOMAP
+  constexpr bool kAvailable = true;
+#else
+  constexpr bool kAvailable = false;
+#endif
+  const TemporaryFolder folder;
+  const auto out = folder.path() / "out", file = out / "octomap.bt";
+  const std::string run = "run " + agiprobot() + " --out '" + out.string() +
+                          "' --quiet --profile paper --detector none --frames 1 --set simulation.colour=false --set output.octomap=";
+  const auto first = test::waretwin(run + "auto");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(first.err, "") << "OctoMap says nothing";
+  EXPECT_EQ(std::filesystem::exists(file), kAvailable);
+  EXPECT_EQ(read_file(out / "report.html").find("octomap.bt") != std::string::npos, kAvailable);
+  if (kAvailable) {
+    EXPECT_TRUE(read_file(file).starts_with("# Octomap OcTree binary file\n"));
+  }
+  ASSERT_EQ(test::waretwin(run + "never").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(file)) << "an earlier run's is taken away";
+  EXPECT_EQ(read_file(out / "report.html").find("octomap.bt"), std::string::npos);
+  if (kAvailable) {
+    ASSERT_EQ(test::waretwin(run + "always").exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(file));
+  } else {
+    EXPECT_ONE_LINE(test::waretwin(run + "always"), "liboctomap-dev");
+    EXPECT_ONE_LINE(test::waretwin(run + "always"), "output.octomap");
+  }
+}
+
 TEST(Program, InspectsWhatMoves) {
   const auto busy = "'" + (test::repository() / "scenes/agiprobot/busy.yaml").string() + "'";
   const auto first = test::waretwin("inspect " + busy + " --motion 4 --quiet");

@@ -131,6 +131,8 @@ TEST_F(CarmenLogTest, SaysWhatIsWrongAndWhere) {
   EXPECT_ERROR(open_recording(write("a.log", good + "FLASER 2 1 -2 0 0 0 0 0 0 1 host 1\n")), "a.log:2:", "'-2' is not a range");
   EXPECT_ERROR(open_recording(write("a.log", good + "ODOM 1 2 3\n")), "a.log:2:", "an ODOM line has 4 words; expected 10");
   EXPECT_ERROR(open_recording(write("a.log", good + "ODOM 1 2 3 0 0 0 soon host 1\n")), "a.log:2:", "soon");
+  EXPECT_ERROR(open_recording(write("a.log", good + "ODOM 1 -2e9 3 0 0 0 1 host 1\n")), "a.log:2:", "'-2e9' is no place");
+  EXPECT_ERROR(open_recording(write("a.log", good + "ODOM 1 2 3 0 0 0 4500000001 host 1\n")), "a.log:2:", "is no time");
   EXPECT_ERROR(open_recording(write("a.log", "PARAM robot_front_laser_max 0\n" + good)), "a.log:1:", "above 0");
   EXPECT_ERROR(open_recording(write("a.txt", good)), "a.txt", "CARMEN log (.log, .log.gz)");
   // A packed log that breaks off.
@@ -139,6 +141,17 @@ TEST_F(CarmenLogTest, SaysWhatIsWrongAndWhere) {
     many += "FLASER 2 1 2." + std::to_string(i * 7919 % 10007) + " 0 0 0 0 0 0 " + std::to_string(i) + " host 1\n";
   const std::string packed = read_file(write_packed("b.log.gz", many));
   EXPECT_ERROR(open_recording(write("c.log.gz", packed.substr(0, packed.size() / 2))), "c.log.gz");
+}
+
+// Stamps so far apart that a difference of larger ones would not fit into 64 bits.
+TEST_F(CarmenLogTest, TakesTheLargestStampsAndPlaces) {
+  const fs::path file = write("far.log",
+                              "FLASER 1 1 0 0 0 0 0 0 -4500000000 host 1\nFLASER 1 1 0 0 0 0 0 0 4500000000 host 1\n"
+                              "ODOM 1e9 -1e9 1e300 0 0 0 1 host 1\nODOM -1e9 1e9 0 0 0 0 2 host 1\n");
+  const auto stream = open_recording(file);
+  EXPECT_EQ(stream->info().duration_s, 9e9);
+  EXPECT_NEAR(stream->info().lasers.at("laser").rate_hz, 1.0 / 9e9, 1e-15);
+  for (const OdometryReading& reading : readings_of(file).odometry) EXPECT_TRUE(reading.X_OB.matrix().allFinite());
 }
 
 TEST_F(CarmenLogTest, ARealLog) {
