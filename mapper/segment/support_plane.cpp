@@ -101,18 +101,16 @@ std::optional<SupportPlane> find_support(const std::vector<HeightSample>& sample
     if (level > lowest) candidates.push_back(level);
   }
   std::optional<SupportPlane> best;
-  std::ptrdiff_t best_count = 0;
   for (const double candidate : candidates) {
     const SupportPlane level = refine_level(samples, candidate, kReach, true);
     const double clearance = std::clamp(3.0 * level.sigma, config.clearance_min_m, config.clearance_max_m);
     const auto count = std::count_if(samples.begin(), samples.end(),
                                      [&](const HeightSample& s) { return !s.in_box && std::abs(s.height - level.height) <= clearance; });
-    if (static_cast<double>(count) < fewest || count <= best_count) continue;
+    if (static_cast<double>(count) < fewest || (best && level.height <= best->height)) continue;
     double share_above = 0.0;
     const double coverage = coverage_above(samples, level.height + clearance, share_above, lowest);
     if (coverage < config.support_coverage || share_above < kLeastAbove) continue;
     best = level;
-    best_count = count;
   }
   return best;
 }

@@ -29,7 +29,7 @@ SupportPlane refine_level(const std::vector<HeightSample>& samples, double heigh
 //   - goes on beyond the object: it fills a share of the ring around the box (its own top, a belt or a seat, ends with the box);
 //   - carries the object: what lies above it within the box spans most of what has depth there (parcels on a belt do not, nor does a
 //   chair's back).
-// Of several the one that fills most of the ring is taken.
+// Of several the highest is taken: a table's top carries what stands on it, its lower shelf does not, however much of it is seen.
 std::optional<SupportPlane> find_support(const std::vector<HeightSample>& samples, const std::vector<double>& levels, double ground_height,
                                          const PlaneConfig& config);
 

@@ -40,6 +40,22 @@ TEST(EvidenceSegmenter, TellsObjectFromOtherAndNamesTheSupport) {
   for (const int pixel : object.pixels) EXPECT_TRUE(traced.masks[1].data[pixel]);
 }
 
+TEST(EvidenceSegmenter, StandsOnTheTableNotOnItsShelf) {
+  // The shelf reaches out and fills more of what lies around the box than the rim of the top does.
+  const TracedScene scene{
+      {box(0, -0.1, 0.15, 0, 1.4, 1.2, 0.05), box(0, 0, 0.72, 0, 0.85, 0.65, 0.03), box(0, 0, 0.75, 0.05, 0.6, 0.4, 0.15)}, {}, true};
+  const Intrinsics intrinsics = test::kinect(640, 360);
+  for (const double degrees : {-30.0, 0.0, 30.0}) {
+    const Pose X_WC = test::from_the_front(degrees, 1.2);
+    const test::TracedFrame traced = test::trace(scene, intrinsics, X_WC, 0.002);
+    EvidenceSegmenter segmenter(SegmentConfig{}, EvidenceRaysConfig{}, test::kinect_stream(intrinsics));
+    const Segmentation found = segmenter.segment(traced.frame, intrinsics, {{"conveyor", *traced.boxes[2], 1.0f}}, X_WC);
+    ASSERT_EQ(found.objects.size(), 1u);
+    ASSERT_TRUE(found.objects[0].support_W) << degrees;
+    EXPECT_NEAR(*found.objects[0].support_W, 0.75, 0.005) << degrees;
+  }
+}
+
 TEST(EvidenceSegmenter, LeavesOutFramesInFastRotation) {
   const Intrinsics intrinsics = test::kinect(640, 360);
   EvidenceSegmenter segmenter(SegmentConfig{}, EvidenceRaysConfig{.max_turn_deg_s = 20.0}, test::kinect_stream(intrinsics));
