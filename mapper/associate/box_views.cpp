@@ -8,9 +8,9 @@
 namespace waretwin {
 
 void BoxViews::add(const BoxView& view) {
-  if (offered_++ % step_ != 0) return;
+  if (least_ == 0 || offered_++ % step_ != 0) return;
   views_.push_back(view);
-  if (views_.size() < 2 * most_) return;
+  if (views_.size() < 2 * least_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < views_.size(); i += 2) views_[kept++] = views_[i];
   views_.resize(kept);

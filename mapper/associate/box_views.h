@@ -22,8 +22,8 @@ using ShownBoxes = std::vector<cv::Rect2f>;
 
 class BoxViews {
  public:
-  // Of more than twice `most` views every second one is dropped; the older ones stay spread over the drive.
-  explicit BoxViews(std::size_t most = 32) : most_(most) {}
+  // Of twice `least` views every second one is dropped: those that stay are spread over all. 0: none is kept.
+  explicit BoxViews(std::size_t least) : least_(least) {}
 
   void add(const BoxView& view);
   void add(const BoxViews& other);
@@ -37,7 +37,7 @@ class BoxViews {
   double match(const ShownBoxes& shown) const;
 
  private:
-  std::size_t most_;
+  std::size_t least_;
   std::vector<BoxView> views_;
   std::size_t step_ = 1, offered_ = 0;
 };

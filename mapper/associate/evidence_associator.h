@@ -28,7 +28,7 @@ class EvidenceAssociator : public Associator {
 
  private:
   struct Track {
-    explicit Track(const EvidenceConfig& config) : grid(config) {}
+    explicit Track(const EvidenceConfig& config) : grid(config), views(static_cast<std::size_t>(config.box_views)) {}
     EvidenceGrid grid;
     BoxViews views;
     std::vector<float> supports;  // heights, one a frame that found one

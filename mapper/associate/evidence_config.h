@@ -19,6 +19,7 @@ struct EvidenceConfig {
   double join_m = 0.02;             // parts nearer than this are one
   double bridge_m = 0.5;            // so are parts up to this far away with nothing but rays without depth between them (a dark belt) ...
   double bridge_share = 0.8;        // ... if this share of the hits on them at least is the object's
+  int box_views = 32;               // the object's boxes in at least so many views tell its parts from clutter; 0: the largest part is it
   double bridge_gain = 0.01;        // ... and the object's boxes are matched better by so much 2D IoU
   double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
   double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
@@ -52,6 +53,8 @@ struct EvidenceConfig {
     f("join_m", join_m, "parts nearer than this belong together", {.min = 0.001, .max = 1});
     f("bridge_m", bridge_m, "so do parts up to this far away with nothing but rays without depth between them", {.min = 0, .max = 5});
     f("bridge_share", bridge_share, "if at least this share of the hits on them is the object's", {.min = 0, .max = 1});
+    f("box_views", box_views, "in how many views an object's boxes are kept, to tell its parts from clutter; 0: the largest part is it",
+      {.min = 0, .max = 1000});
     f("bridge_gain", bridge_gain, "and the mean 2D IoU with the object's boxes rises by at least this much", {.min = 0, .max = 1});
     f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
       {.min = 0, .max = 1});

@@ -8,8 +8,34 @@ namespace waretwin {
 
 namespace {
 
-void count(std::uint16_t& counter, unsigned times = 1) {
-  counter = static_cast<std::uint16_t>(std::min<unsigned>(counter + times, std::numeric_limits<std::uint16_t>::max()));
+constexpr unsigned kMost = std::numeric_limits<std::uint16_t>::max();
+
+// The counts of both cells. Where one is full all are halved: what matters is their shares. `shift`: metres from the bottom of `to` up to
+// that of `from`.
+void pour_cell(const EvidenceCell& from, float shift, EvidenceCell& to) {
+  unsigned sums[] = {unsigned{to.object} + from.object, unsigned{to.other} + from.other, unsigned{to.unknown} + from.unknown,
+                     unsigned{to.passed} + from.passed, unsigned{to.blind} + from.blind};
+  to.z_sum += from.z_sum + shift * from.object;
+  const unsigned objects = sums[0];
+  while (*std::max_element(std::begin(sums), std::end(sums)) > kMost) {
+    for (unsigned& sum : sums) sum /= 2;
+  }
+  if (sums[0] != objects) to.z_sum *= static_cast<float>(sums[0]) / static_cast<float>(objects);
+  to.object = static_cast<std::uint16_t>(sums[0]);
+  to.other = static_cast<std::uint16_t>(sums[1]);
+  to.unknown = static_cast<std::uint16_t>(sums[2]);
+  to.passed = static_cast<std::uint16_t>(sums[3]);
+  to.blind = static_cast<std::uint16_t>(sums[4]);
+}
+
+void count(EvidenceCell& cell, std::uint16_t EvidenceCell::*counter) {
+  if (cell.*counter < kMost) {
+    ++(cell.*counter);
+    return;
+  }
+  EvidenceCell one;
+  one.*counter = 1;
+  pour_cell(one, 0.0f, cell);
 }
 
 // Whole multiples of a step that hold [low, high].
@@ -36,16 +62,14 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
       EvidenceCell& cell = cells_[index(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z))];
       switch (ray.kind) {
         case RayKind::object:
-          if (cell.object < std::numeric_limits<std::uint16_t>::max()) {
-            ++cell.object;
-            cell.z_sum += hit.z() - std::floor(z) * slice;
-          }
+          count(cell, &EvidenceCell::object);
+          cell.z_sum += hit.z() - std::floor(z) * slice;
           break;
         case RayKind::other:
-          count(cell.other);
+          count(cell, &EvidenceCell::other);
           break;
         case RayKind::unknown:
-          count(cell.unknown);
+          count(cell, &EvidenceCell::unknown);
           break;
         case RayKind::blind:
           break;
@@ -58,7 +82,7 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
       const Eigen::Vector3f p = hit + back * (near_first + static_cast<float>(i) * near_step);
       const float px = p.x() * per_cell, py = p.y() * per_cell, pz = p.z() * per_slice;
       if (!(px >= 0.0f && py >= 0.0f && pz >= 0.0f && px < width && py < depth && pz < height)) break;
-      count(cells_[index(static_cast<int>(px), static_cast<int>(py), static_cast<int>(pz))].passed);
+      count(cells_[index(static_cast<int>(px), static_cast<int>(py), static_cast<int>(pz))], &EvidenceCell::passed);
     }
     // Slices that the ray crosses as a whole before that.
     const float rise = hit.z() - from.z();
@@ -73,7 +97,7 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
       const float cx = (from.x() + run * dx) * per_cell, cy = (from.y() + run * dy) * per_cell;
       if (!(cx >= 0.0f && cy >= 0.0f && cx < width && cy < depth)) continue;
       EvidenceCell& cell = cells_[index(static_cast<int>(cx), static_cast<int>(cy), k)];
-      count(blind ? cell.blind : cell.passed);
+      count(cell, blind ? &EvidenceCell::blind : &EvidenceCell::passed);
     }
   }
 }
@@ -140,15 +164,8 @@ void EvidenceGrid::pour(const std::vector<EvidenceCell>& cells, const Eigen::Vec
         if (from.hits() + from.passed + from.blind == 0) continue;
         const int to_x = static_cast<int>(std::floor((origin.x() + (x + 0.5) * cell.x() - origin_.x()) / cell_));
         if (to_x < 0 || to_y < 0 || to_z < 0 || to_x >= size_.x() || to_y >= size_.y() || to_z >= size_.z()) continue;
-        EvidenceCell& to = cells_[index(to_x, to_y, to_z)];
-        count(to.object, from.object);
-        count(to.other, from.other);
-        count(to.unknown, from.unknown);
-        count(to.passed, from.passed);
-        count(to.blind, from.blind);
-        // Heights within the new cell.
         const double shift = origin.z() + z * cell.z() - (origin_.z() + to_z * slice_);
-        to.z_sum += from.z_sum + static_cast<float>(shift) * from.object;
+        pour_cell(from, static_cast<float>(shift), cells_[index(to_x, to_y, to_z)]);
       }
     }
   }

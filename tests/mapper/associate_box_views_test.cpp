@@ -10,7 +10,7 @@ namespace {
 BoxView view(const cv::Rect2f& box) { return {test::camera_pose(0, 0, 0, 0, 0), Intrinsics::checked(200, 100, 100, 100, 100, 50), box}; }
 
 TEST(BoxViews, ShowsBallsWhereTheyProject) {
-  BoxViews views;
+  BoxViews views(32);
   views.add(view({0, 0, 10, 10}));
   // Left of the axis and above it: smaller u, smaller v.
   const ShownBoxes shown = views.shown(std::vector<Eigen::Vector3f>{{1.0f, 0.2f, 0.1f}, {2.0f, -0.4f, 0.0f}}, 0.02);
@@ -22,7 +22,7 @@ TEST(BoxViews, ShowsBallsWhereTheyProject) {
 }
 
 TEST(BoxViews, CutsAtThePicturesEdgesAndLeavesOutWhatIsBehind) {
-  BoxViews views;
+  BoxViews views(32);
   views.add(view({0, 0, 10, 10}));
   const ShownBoxes cut = views.shown(std::vector<Eigen::Vector3f>{{1.0f, 0.99f, 0.0f}, {1.0f, 3.0f, 0.0f}}, 0.01);
   EXPECT_NEAR(cut[0].x, -0.5, 1e-4);
@@ -32,7 +32,7 @@ TEST(BoxViews, CutsAtThePicturesEdgesAndLeavesOutWhatIsBehind) {
 }
 
 TEST(BoxViews, MatchIsTheMeanOverlap) {
-  BoxViews views;
+  BoxViews views(32);
   EXPECT_EQ(views.match({}), 0.0);
   views.add(view({0, 0, 10, 10}));
   views.add(view({0, 0, 10, 10}));

@@ -159,6 +159,21 @@ TEST(Evidence, BridgesABeltThatGivesNoDepth) {
   expect_box(mapping.map[0].cuboid, box(0, -0.03, 0.75, 0, 0.60, 0.38, 0.15), 0.005, 0.4);
 }
 
+TEST(EvidenceGrid, KeepsTheSharesOfAFullCell) {
+  // An hour before the same object: three rays in four end in it, 5 mm up in its slice.
+  EvidenceConfig config;
+  EvidenceGrid grid(config);
+  const Eigen::Vector3f hit(0.0025f, 0.0025f, 0.005f);
+  const std::vector<EvidenceRay> rays{{hit, RayKind::object}, {hit, RayKind::object}, {hit, RayKind::other}, {hit, RayKind::object}};
+  const Eigen::AlignedBox3d around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.01));
+  for (int i = 0; i < 50000; ++i) grid.add({0.0, 0.0, 1.0}, rays, i == 0 ? around : Eigen::AlignedBox3d());
+  const Eigen::Vector3i at = (hit.cast<double>() - grid.origin()).cwiseQuotient(grid.cell_size()).array().floor().matrix().cast<int>();
+  const EvidenceCell& cell = grid.cell(at.x(), at.y(), at.z());
+  EXPECT_GT(cell.object, 20000);
+  EXPECT_NEAR(static_cast<double>(cell.object) / cell.hits(), 0.75, 0.01);
+  EXPECT_NEAR(cell.z_sum / cell.object, 0.005, 5e-5);
+}
+
 // A roller bed on legs: two rails, rollers with gaps between them, four legs. Its parts hang together nowhere.
 std::vector<Cuboid> roller_bed(double y) {
   std::vector<Cuboid> parts{box(0, y - 0.22, 0.6, 0, 1.2, 0.04, 0.1), box(0, y + 0.22, 0.6, 0, 1.2, 0.04, 0.1)};
