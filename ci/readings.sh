@@ -12,7 +12,8 @@ source ci/score_value.sh
 row() {
   local name="$1"
   shift
-  build/release/harness/waretwin run scenes/agiprobot/scenario.yaml --out "$out/$name" --profile paper --detector truth --quiet "$@" >/dev/null
+  build/release/harness/waretwin run scenes/agiprobot/scenario.yaml --out "$out/$name" --profile paper --detector truth \
+    --set truth_detector.min_visible_share=0.8 --quiet "$@" >/dev/null
   printf '| %s | %s | %s | %.2f | %.3f | %.2f | %.3f |\n' "$name" "$(value "$out/$name" summary matched)" \
     "$(value "$out/$name" summary mapped)" "$(value "$out/$name" summary mean_iou3d)" "$(value "$out/$name" summary mean_e_trans_m)" \
     "$(value "$out/$name" summary mean_e_rot_deg)" "$(value "$out/$name" trajectory ate_rmse_m)"

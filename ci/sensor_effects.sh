@@ -13,7 +13,8 @@ row() {
   local name="$1"
   shift
   local dir="$out/$name"
-  build/release/harness/waretwin run scenes/agiprobot/scenario.yaml --out "$dir" --profile paper --detector truth --quiet "$@" >/dev/null
+  build/release/harness/waretwin run scenes/agiprobot/scenario.yaml --out "$dir" --profile paper --detector truth \
+    --set truth_detector.min_visible_share=0.8 --quiet "$@" >/dev/null
   printf '| %s | %s | %s | %.3f | %.3f | %.2f | %.3f | %.3f | %.4f | %.0f | %.0f |\n' "$name" "$(value "$dir" summary matched)" \
     "$(value "$dir" summary mapped)" "$(value "$dir" summary mean_iou3d)" "$(value "$dir" summary mean_e_trans_m)" \
     "$(value "$dir" summary mean_e_rot_deg)" "$(value "$dir" depth valid_share)" "$(value "$dir" depth object_missing_share)" \

@@ -17,10 +17,10 @@ struct EvidenceConfig {
   int min_hits = 3;
   double outside_weight = 3.0;      // a hit seen outside the box says so many times as much about a cell as one inside
   double join_m = 0.02;             // parts nearer than this are one
-  double bridge_m = 0.5;            // so are parts up to this far away with nothing but rays without depth between them (a dark belt) ...
-  double bridge_share = 0.8;        // ... if this share of the hits on them at least is the object's
-  int box_views = 32;               // the object's boxes in at least so many views tell its parts from clutter; 0: the largest part is it
-  double bridge_gain = 0.01;        // ... and the object's boxes are matched better by so much 2D IoU
+  double bridge_m = 0.5;            // so are parts up to this far away ...
+  double bridge_share = 0.8;        // ... that are no smaller piece of what goes on outside the object's boxes than this ...
+  double bridge_gain = 0.01;        // ... and with which the boxes are matched better by so much 2D IoU
+  int box_views = 32;               // boxes are kept of at least so many views; 0: none, the largest part is the object
   double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
   double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
   double top_area_share = 0.04;     // ... and at least this share of it
@@ -51,11 +51,11 @@ struct EvidenceConfig {
     f("outside_weight", outside_weight, "a hit seen outside the box says so many times as much about a cell as one inside",
       {.min = 0, .max = 1000});
     f("join_m", join_m, "parts nearer than this belong together", {.min = 0.001, .max = 1});
-    f("bridge_m", bridge_m, "so do parts up to this far away with nothing but rays without depth between them", {.min = 0, .max = 5});
-    f("bridge_share", bridge_share, "if at least this share of the hits on them is the object's", {.min = 0, .max = 1});
-    f("box_views", box_views, "in how many views an object's boxes are kept, to tell its parts from clutter; 0: the largest part is it",
+    f("bridge_m", bridge_m, "so do parts up to this far away with which the object's boxes are matched better", {.min = 0, .max = 5});
+    f("bridge_share", bridge_share, "if they are no smaller share than this of what goes on outside the boxes", {.min = 0, .max = 1});
+    f("bridge_gain", bridge_gain, "and the mean 2D IoU with the boxes rises by at least this much", {.min = 0, .max = 1});
+    f("box_views", box_views, "an object's boxes are kept of at least so many views; 0: none, its largest part is all of it",
       {.min = 0, .max = 1000});
-    f("bridge_gain", bridge_gain, "and the mean 2D IoU with the object's boxes rises by at least this much", {.min = 0, .max = 1});
     f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
       {.min = 0, .max = 1});
     f("top_area_m2", top_area_m2, "the top is the highest level that at least this much of the footprint reaches", {.min = 0, .max = 10});

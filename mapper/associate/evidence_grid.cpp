@@ -14,7 +14,7 @@ constexpr unsigned kMost = std::numeric_limits<std::uint16_t>::max();
 // that of `from`.
 void pour_cell(const EvidenceCell& from, float shift, EvidenceCell& to) {
   unsigned sums[] = {unsigned{to.object} + from.object, unsigned{to.other} + from.other, unsigned{to.unknown} + from.unknown,
-                     unsigned{to.passed} + from.passed, unsigned{to.blind} + from.blind};
+                     unsigned{to.passed} + from.passed};
   to.z_sum += from.z_sum + shift * from.object;
   const unsigned objects = sums[0];
   while (*std::max_element(std::begin(sums), std::end(sums)) > kMost) {
@@ -25,7 +25,6 @@ void pour_cell(const EvidenceCell& from, float shift, EvidenceCell& to) {
   to.other = static_cast<std::uint16_t>(sums[1]);
   to.unknown = static_cast<std::uint16_t>(sums[2]);
   to.passed = static_cast<std::uint16_t>(sums[3]);
-  to.blind = static_cast<std::uint16_t>(sums[4]);
 }
 
 void count(EvidenceCell& cell, std::uint16_t EvidenceCell::*counter) {
@@ -53,12 +52,9 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
   const int near_steps = std::max(1, static_cast<int>(std::ceil(config_.end_path_m / cell_)));
   const float near_reach = near_first + static_cast<float>(near_steps) * near_step;
   for (const EvidenceRay& ray : rays) {
-    Eigen::Vector3f hit = ray.hit_W - origin;
-    const bool blind = ray.kind == RayKind::blind;
-    // Wherever it ended: far beyond the grid.
-    if (blind) hit = from + (hit - from) * 100.0f;
+    const Eigen::Vector3f hit = ray.hit_W - origin;
     const float x = hit.x() * per_cell, y = hit.y() * per_cell, z = hit.z() * per_slice;
-    if (!blind && x >= 0.0f && y >= 0.0f && z >= 0.0f && x < width && y < depth && z < height) {
+    if (x >= 0.0f && y >= 0.0f && z >= 0.0f && x < width && y < depth && z < height) {
       EvidenceCell& cell = cells_[index(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z))];
       switch (ray.kind) {
         case RayKind::object:
@@ -71,14 +67,12 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
         case RayKind::unknown:
           count(cell, &EvidenceCell::unknown);
           break;
-        case RayKind::blind:
-          break;
       }
     }
     // Close before its end on a side a ray would cross few middle planes; it is followed step by step instead. Above a level surface
     // it passes no slice but those that lie above as a whole.
     const Eigen::Vector3f back = (from - hit).normalized();
-    for (int i = 0; !blind && !ray.level && i < near_steps; ++i) {
+    for (int i = 0; !ray.level && i < near_steps; ++i) {
       const Eigen::Vector3f p = hit + back * (near_first + static_cast<float>(i) * near_step);
       const float px = p.x() * per_cell, py = p.y() * per_cell, pz = p.z() * per_slice;
       if (!(px >= 0.0f && py >= 0.0f && pz >= 0.0f && px < width && py < depth && pz < height)) break;
@@ -97,7 +91,7 @@ void EvidenceGrid::add(const Eigen::Vector3d& from_W, const std::vector<Evidence
       const float cx = (from.x() + run * dx) * per_cell, cy = (from.y() + run * dy) * per_cell;
       if (!(cx >= 0.0f && cy >= 0.0f && cx < width && cy < depth)) continue;
       EvidenceCell& cell = cells_[index(static_cast<int>(cx), static_cast<int>(cy), k)];
-      count(cell, blind ? &EvidenceCell::blind : &EvidenceCell::passed);
+      count(cell, &EvidenceCell::passed);
     }
   }
 }
@@ -161,7 +155,7 @@ void EvidenceGrid::pour(const std::vector<EvidenceCell>& cells, const Eigen::Vec
       const int to_y = static_cast<int>(std::floor((origin.y() + (y + 0.5) * cell.y() - origin_.y()) / cell_));
       for (int x = 0; x < size.x(); ++x, ++at) {
         const EvidenceCell& from = cells[at];
-        if (from.hits() + from.passed + from.blind == 0) continue;
+        if (from.hits() + from.passed == 0) continue;
         const int to_x = static_cast<int>(std::floor((origin.x() + (x + 0.5) * cell.x() - origin_.x()) / cell_));
         if (to_x < 0 || to_y < 0 || to_z < 0 || to_x >= size_.x() || to_y >= size_.y() || to_z >= size_.z()) continue;
         const double shift = origin.z() + z * cell.z() - (origin_.z() + to_z * slice_);

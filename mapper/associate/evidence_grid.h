@@ -3,8 +3,7 @@
 //
 // A ray with depth that may show the object ends in a cell (a hit: of the object, of something else, or of unknown label) and passes
 // all cells before it. A cell is filled where more rays end in it than pass it, and the object's where more of the hits are the
-// object's than another's. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane. Rays
-// that brought no depth are counted apart in all cells on their way.
+// object's than another's. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +19,7 @@ namespace waretwin {
 struct EvidenceCell {
   std::uint16_t object = 0, other = 0, unknown = 0;  // hits
   std::uint16_t passed = 0;
-  std::uint16_t blind = 0;  // rays towards it or through it that brought no depth
-  float z_sum = 0.0f;       // metres above the cell's bottom, of the object's hits
+  float z_sum = 0.0f;  // metres above the cell's bottom, of the object's hits
 
   int hits() const { return object + other + unknown; }
 };

@@ -15,11 +15,8 @@ enum class CellOwner : std::uint8_t { none, object, other };
 // Of the object's cells; 0 for none. `owners`: one a cell of the grid, x fastest, then y, then z.
 int median_hits(const EvidenceGrid& grid, const std::vector<CellOwner>& owners);
 
-// The object's cells that are connected over gaps of join_m are a part. Makes `none` of all but
-//  - the part that matches the boxes best in which the object was detected, and is not a piece of what goes on outside them (without
-//    boxes: the one with the most hits);
-//  - parts that belong to it across a gap from which rays bring no depth (two rails with a dark belt between them), as long as the boxes
-//    are matched better with them than without.
+// The object's cells that are connected over gaps of join_m are a part. Makes `none` of those of all parts but the ones that are the object
+// (part_choice.h).
 void keep_one_object(const EvidenceGrid& grid, std::vector<CellOwner>& owners, const BoxViews& views, const EvidenceConfig& config);
 
 }  // namespace waretwin

@@ -57,15 +57,12 @@ DepthPoints DepthRays::points(const RgbdFrame& frame, const Pose& X_WC, double d
         const float measured = row[u * thin_];
         const Eigen::Vector3f& ray = view.rays_C[i];
         result.depth[i] = 0.0f;
-        const bool valid = measured >= low && measured <= high && measured > 0.0f && std::isfinite(measured);
-        const float z = valid ? measured : static_cast<float>(kNominalDepth);
         // A pixel that sees nothing lies outside every box.
         result.pixels[i] = Eigen::Vector2f::Constant(-1e6f);
-        // Beyond the range something was measured: that is not blindness.
-        if (ray.isZero(0.0f) || (!valid && measured > 0.0f)) continue;
-        const Eigen::Vector3f p_C = z * ray + p_CD;
+        if (!(measured >= low && measured <= high && measured > 0.0f && std::isfinite(measured)) || ray.isZero(0.0f)) continue;
+        const Eigen::Vector3f p_C = measured * ray + p_CD;
         if (!(p_C.z() > 1e-3f)) continue;
-        if (valid) result.depth[i] = z;
+        result.depth[i] = measured;
         result.points_W[i] = R_WC * p_C + p_WC;
         result.pixels[i] = {fx * p_C.x() / p_C.z() + cx, fy * p_C.y() / p_C.z() + cy};
       }

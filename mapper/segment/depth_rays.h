@@ -11,17 +11,14 @@
 
 namespace waretwin {
 
-// Where a pixel without depth is taken to look, in metres: hardly matters, for the lenses of depth and colour are near each other.
-inline constexpr double kNominalDepth = 1.5;
-
 // Where the stream has it, the depth camera's own picture: what was warped into the colour view lacks the border of everything that
 // stands before something else, on one side more than on the other.
 struct DepthPoints {
   int width = 0, height = 0;                         // of the thinned picture
   Eigen::Vector3d from_W = Eigen::Vector3d::Zero();  // where the rays start
   std::vector<float> depth;                          // metres along the axis; 0 = nothing measured
-  std::vector<Eigen::Vector3f> points_W;             // metres; where nothing was measured, what lies kNominalDepth ahead
-  std::vector<Eigen::Vector2f> pixels;               // of the colour picture, centre of the first pixel at (0.5, 0.5)
+  std::vector<Eigen::Vector3f> points_W;             // metres; where something was measured
+  std::vector<Eigen::Vector2f> pixels;               // of the colour picture, centre of the first pixel at (0.5, 0.5); else far outside
 };
 
 class DepthRays {

@@ -177,10 +177,7 @@ int EvidenceSegmenter::collect_rays(const DepthPoints& points, const Box& box, c
     const Eigen::Vector2f& pixel = points.pixels[i];
     if (!inside(box.region, pixel)) continue;
     EvidenceRay ray{points.points_W[i], RayKind::other, is_level(points, i)};
-    if (points.depth[i] == 0.0f) {
-      if (!inside(box.inner, pixel)) continue;
-      ray.kind = RayKind::blind;
-    } else if (inside(box.outer, pixel)) {
+    if (inside(box.outer, pixel)) {
       ++with_depth;
       const float above = ray.hit_W.z() - static_cast<float>(box.floor);
       if (above > box.clearance) {

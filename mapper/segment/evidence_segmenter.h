@@ -20,7 +20,7 @@ namespace waretwin {
 // Rays that end inside the box and above what the object stands on speak for the object, rays that end elsewhere for something else; near
 // the box's edge and close above the support they tell only what they pass. Frames taken in fast rotation tell nothing. Where boxes
 // overlap, a ray in both is unknown to both; but a box within another one has its rays for itself, and of a table's box (cut_first) only
-// the level top is the table's. Pixels without depth inside the box become blind rays.
+// the level top is the table's.
 class EvidenceSegmenter : public Segmenter {
  public:
   EvidenceSegmenter(const SegmentConfig& config, const EvidenceRaysConfig& rays, const StreamInfo& info);

@@ -15,10 +15,9 @@
 
 namespace waretwin {
 
-// Blind: the pixel brought no depth; the ray then tells a direction alone.
-enum class RayKind : std::uint8_t { object, other, unknown, blind };
+enum class RayKind : std::uint8_t { object, other, unknown };
 
-// One pixel of a depth image: where its ray ended (blind: a point that it points at), and whether that is the detected object.
+// One pixel with depth: where its ray ended, and whether that is the detected object.
 struct EvidenceRay {
   Eigen::Vector3f hit_W = Eigen::Vector3f::Zero();  // metres
   RayKind kind = RayKind::unknown;
