@@ -64,27 +64,17 @@ class PartChoice {
       match = best;
       open.erase(next);
     }
-    // The first one was not asked whether it is needed, and what came early may not be any more.
-    for (bool done = false; !done;) {
-      done = true;
-      for (auto i = chosen.begin(); chosen.size() > 1 && i != chosen.end(); ++i) {
-        std::vector<std::size_t> others = chosen;
-        others.erase(others.begin() + (i - chosen.begin()));
-        const double without = match_of(others);
-        if (without + config_.bridge_gain < match) continue;
-        chosen = std::move(others);
+    // The others were asked whether they are needed; the first one was not.
+    if (chosen.size() > 1) {
+      ShownBoxes others = parts_[chosen[1]].shown;
+      for (std::size_t k = 2; k < chosen.size(); ++k) others = united(others, parts_[chosen[k]].shown);
+      const double without = views_.match(others);
+      if (without + config_.bridge_gain >= match) {
+        chosen.erase(chosen.begin());
         match = without;
-        done = false;
-        break;
       }
     }
     return {chosen, match};
-  }
-
-  double match_of(const std::vector<std::size_t>& chosen) const {
-    ShownBoxes whole = parts_[chosen.front()].shown;
-    for (const std::size_t i : chosen) whole = united(whole, parts_[i].shown);
-    return views_.match(whole);
   }
 
   double mean_share(const std::vector<std::size_t>& chosen) const {

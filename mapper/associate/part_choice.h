@@ -20,8 +20,8 @@ struct EvidencePart {
 
 // Indices of the parts that together match the boxes of `views` best. Each of those that match best alone is tried for the first one;
 // others join it one by one, always the one with which the boxes are matched best, as long as the match rises by bridge_gain and the part
-// lies within bridge_m of those before it and is no smaller piece than bridge_share of its body; parts without which the match falls by
-// less than that are left out again. Without views: the one with most hits. `parts` is not empty.
+// lies within bridge_m of those before it and is no smaller piece than bridge_share of its body. A first one that the others do without as
+// well is left out again. Without views: the one with most hits. `parts` is not empty.
 std::vector<std::size_t> choose_parts(const std::vector<EvidencePart>& parts, const BoxViews& views, const EvidenceConfig& config);
 
 }  // namespace waretwin
