@@ -96,14 +96,9 @@ double median(std::vector<float> values) {
 
 std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context,
                                                ObjectList& map) {
-  // A resumed map brings ids of its own.
-  for (const MappedObject& mapped : map) {
-    next_id_ = std::max(next_id_, mapped.id + 1);
-    const auto [track, fresh] = tracks_.try_emplace(mapped.id, config_);
-    if (fresh) track->second.resumed = mapped.observations;
-  }
+  adopt(map);
 
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // -overlap, object, mapped
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // -(overlap and 2D IoU), object, mapped
   std::vector<double> floors;                                       // of the mapped objects
   for (const MappedObject& mapped : map) floors.push_back(support_of(tracks_.at(mapped.id)));
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -111,7 +106,11 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
       if (objects[i].detection.class_name != map[k].class_name) continue;
       const double margin = std::min(config_.overlap_margin_m, 0.25 * map[k].cuboid.size.head<2>().minCoeff());
       const double overlap = share_inside(objects[i].points_W, map[k].cuboid, floors[k], margin);
-      if (overlap >= config_.min_overlap) pairs.emplace_back(-overlap, i, k);
+      if (overlap < config_.min_overlap) continue;
+      // Of neighbours in one row the points alone do not tell which is meant: each box holds some of the other's.
+      const auto box = projected_box(map[k].cuboid, context.X_WC, context.intrinsics);
+      const double match = box ? iou_2d(*box, objects[i].detection.box) : 0.0;
+      pairs.emplace_back(-(overlap + match), i, k);
     }
   }
   std::sort(pairs.begin(), pairs.end());
@@ -156,7 +155,7 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
   count_misses(context, map);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     for (std::size_t k = i + 1; k < ids.size(); ++k) {
-      if (ids[i] != 0 && ids[k] != 0) apart_.insert(std::minmax(ids[i], ids[k]));
+      if (ids[i] != 0 && ids[k] != 0) ++apart_[std::minmax(ids[i], ids[k])];
     }
   }
 
@@ -164,6 +163,15 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
   merge_overlapping(map);
   for (std::size_t m = merges_before; m < merges_.size(); ++m) std::replace(ids.begin(), ids.end(), merges_[m].first, merges_[m].second);
   return ids;
+}
+
+// A resumed map brings ids of its own.
+void EvidenceAssociator::adopt(const ObjectList& map) {
+  for (const MappedObject& mapped : map) {
+    next_id_ = std::max(next_id_, mapped.id + 1);
+    const auto [track, fresh] = tracks_.try_emplace(mapped.id, config_);
+    if (fresh) track->second.resumed = mapped.observations;
+  }
 }
 
 std::vector<std::pair<int, int>> EvidenceAssociator::take_merges() { return std::exchange(merges_, {}); }
@@ -224,13 +232,23 @@ void EvidenceAssociator::count_misses(const AssociationContext& context, const O
   }
 }
 
+int EvidenceAssociator::frames_together(const MappedObject& one, const MappedObject& other) const {
+  const auto together = apart_.find(std::minmax(one.id, other.id));
+  return together == apart_.end() ? 0 : together->second;
+}
+
+bool EvidenceAssociator::share_space(const MappedObject& one, const MappedObject& other) const {
+  const double smaller = std::min(one.cuboid.volume(), other.cuboid.volume());
+  if (one.class_name != other.class_name || smaller <= 0.0) return false;
+  return intersection_volume(one.cuboid, other.cuboid) > config_.merge_overlap * smaller || explains(one, other) || explains(other, one);
+}
+
 // What was seen beside the one is beside what it becomes.
 void EvidenceAssociator::keep_apart(int gone, int stays) {
-  std::set<std::pair<int, int>> renamed;
-  for (auto [a, b] : apart_) {
-    if (a == gone) a = stays;
-    if (b == gone) b = stays;
-    renamed.insert(std::minmax(a, b));
+  std::map<std::pair<int, int>, int> renamed;
+  for (const auto& [pair, frames] : apart_) {
+    const int a = pair.first == gone ? stays : pair.first, b = pair.second == gone ? stays : pair.second;
+    if (a != b) renamed[std::minmax(a, b)] += frames;
   }
   apart_ = std::move(renamed);
 }
@@ -245,10 +263,7 @@ bool EvidenceAssociator::explains(const MappedObject& one, const MappedObject& o
 void EvidenceAssociator::merge_overlapping(ObjectList& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     for (std::size_t k = i + 1; k < map.size();) {
-      const double smaller = std::min(map[i].cuboid.volume(), map[k].cuboid.volume());
-      if (map[i].class_name != map[k].class_name || smaller <= 0.0 || apart_.contains(std::minmax(map[i].id, map[k].id)) ||
-          (intersection_volume(map[i].cuboid, map[k].cuboid) <= config_.merge_overlap * smaller && !explains(map[i], map[k]) &&
-           !explains(map[k], map[i]))) {
+      if (frames_together(map[i], map[k]) > 0 || !share_space(map[i], map[k])) {
         ++k;
         continue;
       }
@@ -281,16 +296,42 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
   }
 }
 
-void EvidenceAssociator::finish(ObjectList& map) {
-  for (MappedObject& mapped : map) {
-    const auto track = tracks_.find(mapped.id);
-    if (track != tracks_.end()) shape(mapped, track->second);
+// Neighbours share most of the frames that show one of them. Of two objects in one place that were seen side by side now and then one took
+// detections of a neighbour for its own at first. What it knows is spoilt: it goes.
+void EvidenceAssociator::drop_doubles(ObjectList& map) {
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    for (std::size_t k = i + 1; k < map.size();) {
+      const int together = frames_together(map[i], map[k]);
+      if (together == 0 || together > config_.neighbour_share * std::min(map[i].observations, map[k].observations) ||
+          !share_space(map[i], map[k])) {
+        ++k;
+        continue;
+      }
+      const auto match = [&](const MappedObject& mapped) {
+        const BoxViews& views = tracks_.at(mapped.id).views;
+        return views.match(views.shown(mapped.cuboid));
+      };
+      if (match(map[k]) > match(map[i])) std::swap(map[i], map[k]);
+      const int gone = map[k].id;
+      keep_apart(gone, map[i].id);
+      merges_.emplace_back(gone, map[i].id);
+      tracks_.erase(gone);
+      map.erase(map.begin() + static_cast<std::ptrdiff_t>(k));
+      k = i + 1;
+    }
   }
+}
+
+void EvidenceAssociator::finish(ObjectList& map) {
+  adopt(map);
+  for (MappedObject& mapped : map) shape(mapped, tracks_.at(mapped.id));
+  merge_overlapping(map);
+  drop_doubles(map);
   std::erase_if(map, [&](const MappedObject& mapped) {
-    const auto track = tracks_.find(mapped.id);
-    if (track == tracks_.end()) return false;  // of a map that is resumed, not seen again
-    const bool stray = mapped.observations < config_.min_observations ||
-                       mapped.observations < config_.min_presence * (mapped.observations + track->second.misses);
+    const Track& track = tracks_.at(mapped.id);
+    if (track.grounds.empty()) return false;  // of a map that is resumed, not seen again
+    const bool stray =
+        mapped.observations < config_.min_observations || mapped.observations < config_.min_presence * (mapped.observations + track.misses);
     if (stray) merges_.emplace_back(mapped.id, 0);
     return stray;
   });

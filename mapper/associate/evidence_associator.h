@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -16,8 +15,9 @@ namespace waretwin {
 // A detection is the mapped object of its class that holds the largest share of its points, at least min_overlap; within a frame pairs are
 // one to one. Its rays are added to the object's evidence grid, from which the cuboid is searched every shape_every observations and at
 // the end, ever less often as observations add up. Mapped objects that come to share most of the smaller one's volume, or of which one
-// explains the other's boxes, become one: the older id stays. At the end objects seen too seldom, and those that frames in full view of
-// them did not detect, are taken out.
+// explains the other's boxes, become one, the older id stays; but if a frame showed both side by side, the
+// better one alone stays at the end, or both if many frames did. At the end objects seen too seldom, and those
+// that frames in full view of them did not detect, are taken out.
 class EvidenceAssociator : public Associator {
  public:
   explicit EvidenceAssociator(const EvidenceConfig& config) : config_(config) {}
@@ -40,6 +40,7 @@ class EvidenceAssociator : public Associator {
     int misses = 0;     // frames in full view of it without a detection
   };
 
+  void adopt(const ObjectList& map);
   void update(MappedObject& mapped, Track& track, const SegmentedObject& object, const AssociationContext& context);
   double support_of(const Track& track) const;
   void add_rays(Track& track, const SegmentedObject& object) const;
@@ -47,13 +48,17 @@ class EvidenceAssociator : public Associator {
   void count_misses(const AssociationContext& context, const ObjectList& map);
   // True where the other's boxes are matched by this one's cuboid, and no worse than by its own: clutter that was taken for it.
   bool explains(const MappedObject& one, const MappedObject& other) const;
+  int frames_together(const MappedObject& one, const MappedObject& other) const;
+  // True where both are in one place, or one explains the other's boxes.
+  bool share_space(const MappedObject& one, const MappedObject& other) const;
   void keep_apart(int gone, int stays);
   void merge_overlapping(ObjectList& map);
+  void drop_doubles(ObjectList& map);
 
   EvidenceConfig config_;
   int next_id_ = 1;
-  std::map<int, Track> tracks_;          // by map id
-  std::set<std::pair<int, int>> apart_;  // ids that one frame showed side by side: never one object
+  std::map<int, Track> tracks_;               // by map id
+  std::map<std::pair<int, int>, int> apart_;  // frames that showed both of two ids
   std::vector<std::pair<int, int>> merges_;
 };
 

@@ -35,6 +35,7 @@ struct EvidenceConfig {
   double same_object_share = 0.6;  // a detection with more of its points inside an object that has one already is no other object
   double merge_overlap = 0.5;      // of the smaller of two mapped cuboids, above which they are one object
   double same_boxes_match = 0.5;   // so are two of which one's cuboid matches the other's boxes so well, and better than its own
+  double neighbour_share = 0.3;    // but no two that a larger share of the frames with one of them showed side by side
   int min_observations = 3;        // fewer are no object at the end
   double min_presence = 0.3;       // detections over frames in which the object was in full view
 
@@ -74,6 +75,8 @@ struct EvidenceConfig {
       "a detection with more of its points inside an object that has its own in this frame is no other object", {.min = 0, .max = 1});
     f("merge_overlap", merge_overlap, "mapped objects that share more of the smaller one's volume are one", {.min = 0, .max = 1});
     f("same_boxes_match", same_boxes_match, "so are two of which one's cuboid matches the other's boxes so well, and better than its own",
+      {.min = 0, .max = 1});
+    f("neighbour_share", neighbour_share, "but never two that a larger share of the frames with one of them showed side by side",
       {.min = 0, .max = 1});
     f("min_observations", min_observations, "objects seen in fewer frames are taken out at the end", {.min = 1, .max = 1000});
     f("min_presence", min_presence,
