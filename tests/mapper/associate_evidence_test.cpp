@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mapper/associate/evidence_grid.h"
 #include "mapper/associate/evidence_shape.h"
 #include "tests/mapper/evidence_fixtures.h"
@@ -9,6 +11,7 @@ namespace {
 
 using test::a_drive_past;
 using test::box;
+using test::camera_pose;
 using test::EvidenceMapping;
 using test::from_the_front;
 using test::TracedScene;
@@ -172,6 +175,24 @@ TEST(EvidenceGrid, KeepsTheSharesOfAFullCell) {
   EXPECT_GT(cell.object, 20000);
   EXPECT_NEAR(static_cast<double>(cell.object) / cell.hits(), 0.75, 0.01);
   EXPECT_NEAR(cell.z_sum / cell.object, 0.005, 5e-5);
+}
+
+TEST(Evidence, TellsConveyorsInARowApart) {
+  // End to end, none of them ever in one picture as a whole: each box holds a piece of the neighbour's length.
+  TracedScene scene{
+      {box(-1.61, 0.35, 0, 0, 1.6, 0.6, 0.7), box(0, 0.35, 0, 0, 1.6, 0.6, 0.7), box(1.61, 0.35, 0, 0, 1.6, 0.6, 0.7)}, {}, true};
+  EvidenceMapping mapping;
+  for (double x = -2.4; x <= 2.41; x += 0.3) mapping.look(scene, from_the_front(0, 0.9, x), {0, 1, 2}, 0.002);
+  for (double x = 2.4; x >= -2.41; x -= 0.4) {
+    mapping.look(scene, camera_pose(x, 1.7, 1.4, -std::numbers::pi / 2, to_radians(45)), {0, 1, 2}, 0.002);
+  }
+  ASSERT_EQ(mapping.finish().size(), 3u);
+  for (const Cuboid& truth : scene.boxes) {
+    const auto nearest = std::min_element(mapping.map.begin(), mapping.map.end(), [&](const MappedObject& a, const MappedObject& b) {
+      return (a.cuboid.centre - truth.centre).norm() < (b.cuboid.centre - truth.centre).norm();
+    });
+    EXPECT_GT(iou_3d(nearest->cuboid, canonical(truth)), 0.75);
+  }
 }
 
 // A roller bed on legs: two rails, rollers with gaps between them, four legs. Its parts hang together nowhere.
