@@ -10,15 +10,27 @@ namespace waretwin {
 void BoxViews::add(const BoxView& view) {
   if (least_ == 0 || offered_++ % step_ != 0) return;
   views_.push_back(view);
-  if (views_.size() < 2 * least_) return;
+  thin();
+}
+
+void BoxViews::add(const BoxViews& other) {
+  BoxViews theirs = other;
+  while (theirs.step_ > step_) halve();
+  while (step_ > theirs.step_) theirs.halve();
+  views_.insert(views_.end(), theirs.views_.begin(), theirs.views_.end());
+  offered_ += theirs.offered_;
+  thin();
+}
+
+void BoxViews::thin() {
+  while (least_ > 0 && views_.size() >= 2 * least_) halve();
+}
+
+void BoxViews::halve() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < views_.size(); i += 2) views_[kept++] = views_[i];
   views_.resize(kept);
   step_ *= 2;
-}
-
-void BoxViews::add(const BoxViews& other) {
-  for (const BoxView& view : other.views_) add(view);
 }
 
 ShownBoxes BoxViews::shown(const std::vector<Eigen::Vector3f>& points_W, double radius) const {
@@ -39,9 +51,10 @@ ShownBoxes BoxViews::shown(const std::vector<Eigen::Vector3f>& points_W, double 
       low = low.min(middle - reach);
       high = high.max(middle + reach);
     }
-    const Eigen::Array2f centre(static_cast<float>(in.cx), static_cast<float>(in.cy));
-    low = (low + centre).max(-0.5f);
-    high = (high + centre).min(Eigen::Array2f(static_cast<float>(in.width), static_cast<float>(in.height)) - 0.5f);
+    // Boxes count from the picture's corner, half a pixel before the centre of its first pixel.
+    const Eigen::Array2f centre(static_cast<float>(in.cx) + 0.5f, static_cast<float>(in.cy) + 0.5f);
+    low = (low + centre).max(0.0f);
+    high = (high + centre).min(Eigen::Array2f(static_cast<float>(in.width), static_cast<float>(in.height)));
     const bool none = !(low < high).all();
     boxes.push_back(none ? cv::Rect2f() : cv::Rect2f(low.x(), low.y(), high.x() - low.x(), high.y() - low.y()));
   }

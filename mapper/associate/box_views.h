@@ -37,6 +37,9 @@ class BoxViews {
   double match(const ShownBoxes& shown) const;
 
  private:
+  void thin();
+  void halve();
+
   std::size_t least_;
   std::vector<BoxView> views_;
   std::size_t step_ = 1, offered_ = 0;

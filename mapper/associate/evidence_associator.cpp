@@ -117,7 +117,7 @@ std::vector<int> EvidenceAssociator::associate(const std::vector<SegmentedObject
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> partner(objects.size(), kNone);
   std::vector<char> used(map.size(), 0), contested(objects.size(), 0);
-  for (const auto& [negative_overlap, i, k] : pairs) {
+  for (const auto& [negative_value, i, k] : pairs) {
     if (partner[i] != kNone) continue;
     if (used[k]) {
       // A neighbour lies in the margin, a second box in the object itself.
@@ -232,6 +232,12 @@ void EvidenceAssociator::count_misses(const AssociationContext& context, const O
   }
 }
 
+// Of a resumed map, and not seen since: nothing is known that could change it.
+bool EvidenceAssociator::untouched(const MappedObject& mapped) const {
+  const Track& track = tracks_.at(mapped.id);
+  return track.resumed > 0 && track.grounds.empty();
+}
+
 int EvidenceAssociator::frames_together(const MappedObject& one, const MappedObject& other) const {
   const auto together = apart_.find(std::minmax(one.id, other.id));
   return together == apart_.end() ? 0 : together->second;
@@ -240,7 +246,11 @@ int EvidenceAssociator::frames_together(const MappedObject& one, const MappedObj
 bool EvidenceAssociator::share_space(const MappedObject& one, const MappedObject& other) const {
   const double smaller = std::min(one.cuboid.volume(), other.cuboid.volume());
   if (one.class_name != other.class_name || smaller <= 0.0) return false;
-  return intersection_volume(one.cuboid, other.cuboid) > config_.merge_overlap * smaller || explains(one, other) || explains(other, one);
+  if (intersection_volume(one.cuboid, other.cuboid) > config_.merge_overlap * smaller) return true;
+  // What was taken for the object at first lies near it: it was in its boxes.
+  Cuboid around = one.cuboid;
+  around.size += Eigen::Vector3d::Constant(2.0 * config_.stray_reach_m);
+  return intersection_volume(around, other.cuboid) > 0.0 && (explains(one, other) || explains(other, one));
 }
 
 // What was seen beside the one is beside what it becomes.
@@ -263,7 +273,7 @@ bool EvidenceAssociator::explains(const MappedObject& one, const MappedObject& o
 void EvidenceAssociator::merge_overlapping(ObjectList& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     for (std::size_t k = i + 1; k < map.size();) {
-      if (frames_together(map[i], map[k]) > 0 || !share_space(map[i], map[k])) {
+      if (untouched(map[i]) || untouched(map[k]) || frames_together(map[i], map[k]) > 0 || !share_space(map[i], map[k])) {
         ++k;
         continue;
       }
@@ -301,9 +311,10 @@ void EvidenceAssociator::merge_overlapping(ObjectList& map) {
 void EvidenceAssociator::drop_doubles(ObjectList& map) {
   for (std::size_t i = 0; i < map.size(); ++i) {
     for (std::size_t k = i + 1; k < map.size();) {
+      // Of this run: an archive does not tell which frames showed what.
+      const auto seen = static_cast<double>(std::min(tracks_.at(map[i].id).grounds.size(), tracks_.at(map[k].id).grounds.size()));
       const int together = frames_together(map[i], map[k]);
-      if (together == 0 || together > config_.neighbour_share * std::min(map[i].observations, map[k].observations) ||
-          !share_space(map[i], map[k])) {
+      if (together == 0 || together > config_.neighbour_share * seen || !share_space(map[i], map[k])) {
         ++k;
         continue;
       }
@@ -313,7 +324,6 @@ void EvidenceAssociator::drop_doubles(ObjectList& map) {
       };
       if (match(map[k]) > match(map[i])) std::swap(map[i], map[k]);
       const int gone = map[k].id;
-      keep_apart(gone, map[i].id);
       merges_.emplace_back(gone, map[i].id);
       tracks_.erase(gone);
       map.erase(map.begin() + static_cast<std::ptrdiff_t>(k));
@@ -329,7 +339,7 @@ void EvidenceAssociator::finish(ObjectList& map) {
   drop_doubles(map);
   std::erase_if(map, [&](const MappedObject& mapped) {
     const Track& track = tracks_.at(mapped.id);
-    if (track.grounds.empty()) return false;  // of a map that is resumed, not seen again
+    if (track.grounds.empty() && track.misses == 0) return false;  // of a map that is resumed, and nobody looked there
     const bool stray =
         mapped.observations < config_.min_observations || mapped.observations < config_.min_presence * (mapped.observations + track.misses);
     if (stray) merges_.emplace_back(mapped.id, 0);

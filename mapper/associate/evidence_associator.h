@@ -48,6 +48,7 @@ class EvidenceAssociator : public Associator {
   void count_misses(const AssociationContext& context, const ObjectList& map);
   // True where the other's boxes are matched by this one's cuboid, and no worse than by its own: clutter that was taken for it.
   bool explains(const MappedObject& one, const MappedObject& other) const;
+  bool untouched(const MappedObject& mapped) const;
   int frames_together(const MappedObject& one, const MappedObject& other) const;
   // True where both are in one place, or one explains the other's boxes.
   bool share_space(const MappedObject& one, const MappedObject& other) const;

@@ -20,7 +20,7 @@ struct EvidenceConfig {
   double bridge_m = 0.5;            // so are parts up to this far away ...
   double bridge_share = 0.8;        // ... that are no smaller piece of what goes on outside the object's boxes than this ...
   double bridge_gain = 0.005;       // ... and with which the boxes are matched better by so much 2D IoU
-  int box_views = 32;               // boxes are kept of at least so many views; 0: none, the largest part is the object
+  int box_views = 32;               // boxes are kept of at least so many views; 0: none, the part with most hits is the object
   double edge_support_m2 = 0.0006;  // a face stands where at least this much of the outline seen against it reaches it
   double top_area_m2 = 0.004;       // the top is the highest level that at least this much of the footprint reaches ...
   double top_area_share = 0.04;     // ... and at least this share of it
@@ -35,7 +35,8 @@ struct EvidenceConfig {
   double same_object_share = 0.6;  // a detection with more of its points inside an object that has one already is no other object
   double merge_overlap = 0.5;      // of the smaller of two mapped cuboids, above which they are one object
   double same_boxes_match = 0.5;   // so are two of which one's cuboid matches the other's boxes so well, and better than its own
-  double neighbour_share = 0.3;    // but no two that a larger share of the frames with one of them showed side by side
+  double stray_reach_m = 1.0;      // if they are no farther apart than this
+  double neighbour_share = 0.3;    // of two in one place seen side by side now and then, up to this share of frames, the worse goes
   int min_observations = 3;        // fewer are no object at the end
   double min_presence = 0.3;       // detections over frames in which the object was in full view
 
@@ -55,7 +56,7 @@ struct EvidenceConfig {
     f("bridge_m", bridge_m, "so do parts up to this far away with which the object's boxes are matched better", {.min = 0, .max = 5});
     f("bridge_share", bridge_share, "if they are no smaller share than this of what goes on outside the boxes", {.min = 0, .max = 1});
     f("bridge_gain", bridge_gain, "and the mean 2D IoU with the boxes rises by at least this much", {.min = 0, .max = 1});
-    f("box_views", box_views, "an object's boxes are kept of at least so many views; 0: none, its largest part is all of it",
+    f("box_views", box_views, "an object's boxes are kept of at least so many views; 0: none, the part with most hits is all of it",
       {.min = 0, .max = 1000});
     f("edge_support_m2", edge_support_m2, "a face stands where at least this much of the outline, seen against it, reaches it",
       {.min = 0, .max = 1});
@@ -76,7 +77,10 @@ struct EvidenceConfig {
     f("merge_overlap", merge_overlap, "mapped objects that share more of the smaller one's volume are one", {.min = 0, .max = 1});
     f("same_boxes_match", same_boxes_match, "so are two of which one's cuboid matches the other's boxes so well, and better than its own",
       {.min = 0, .max = 1});
-    f("neighbour_share", neighbour_share, "but never two that a larger share of the frames with one of them showed side by side",
+    f("stray_reach_m", stray_reach_m, "if they are no farther apart than this", {.min = 0, .max = 100});
+    f("neighbour_share", neighbour_share,
+      "of two in one place that at most this share of the less-seen one's frames showed side by side the worse is taken out at the end; "
+      "above, both stay",
       {.min = 0, .max = 1});
     f("min_observations", min_observations, "objects seen in fewer frames are taken out at the end", {.min = 1, .max = 1000});
     f("min_presence", min_presence,

@@ -2,8 +2,8 @@
 // idea, in place of accumulated points.
 //
 // A ray with depth that may show the object ends in a cell (a hit: of the object, of something else, or of unknown label) and passes
-// all cells before it. A cell is filled where more rays end in it than pass it, and the object's where more of the hits are the
-// object's than another's. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane.
+// all cells before it. A cell is filled where more rays end in it than pass it, and the object's where its hits are more than
+// outside_weight times those of others. Cells are flat slices: a pass is counted where the ray crosses the slice's middle plane.
 #pragma once
 
 #include <Eigen/Core>

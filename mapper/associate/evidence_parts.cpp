@@ -84,7 +84,7 @@ class CoarseGrid {
   std::vector<CoarseCell> cells_;
 };
 
-std::vector<EvidencePart> connected_parts(CoarseGrid& coarse) {
+std::vector<EvidencePart> connected_parts(CoarseGrid& coarse, const EvidenceGrid& grid, const Eigen::Vector3d& edge) {
   std::vector<double> shares;  // by body
   const auto new_body = [](const CoarseCell& cell) { return cell.is_filled() && cell.body == 0; };
   coarse.for_each([&](const Eigen::Vector3i& c) {
@@ -100,23 +100,14 @@ std::vector<EvidencePart> connected_parts(CoarseGrid& coarse) {
     if (!new_part(coarse.at(c))) return;
     EvidencePart part;
     const int id = static_cast<int>(parts.size()) + 1;
-    part.cells = coarse.connected(c, new_part, [id](CoarseCell& cell) { cell.part = id; });
-    for (const Eigen::Vector3i& n : part.cells) part.hits += coarse.at(n).hits;
+    for (const Eigen::Vector3i& n : coarse.connected(c, new_part, [id](CoarseCell& cell) { cell.part = id; })) {
+      part.hits += coarse.at(n).hits;
+      part.cells_W.push_back((grid.origin() + (n.cast<double>() + Eigen::Vector3d::Constant(0.5)).cwiseProduct(edge)).cast<float>());
+    }
     part.share = shares[static_cast<std::size_t>(coarse.at(c).body) - 1];
     parts.push_back(std::move(part));
   });
   return parts;
-}
-
-// Where a part lies, in the world.
-std::vector<Eigen::Vector3f> places_of(const EvidencePart& part, const EvidenceGrid& grid, const Eigen::Vector3i& step) {
-  std::vector<Eigen::Vector3f> places;
-  places.reserve(part.cells.size());
-  const Eigen::Vector3d edge = grid.cell_size().cwiseProduct(step.cast<double>());
-  for (const Eigen::Vector3i& c : part.cells) {
-    places.push_back((grid.origin() + (c.cast<double>() + Eigen::Vector3d::Constant(0.5)).cwiseProduct(edge)).cast<float>());
-  }
-  return places;
 }
 
 }  // namespace
@@ -139,15 +130,16 @@ int median_hits(const EvidenceGrid& grid, const std::vector<CellOwner>& owners) 
 
 void keep_one_object(const EvidenceGrid& grid, std::vector<CellOwner>& owners, const BoxViews& views, const EvidenceConfig& config) {
   CoarseGrid coarse(grid, owners, config.join_m);
-  std::vector<EvidencePart> parts = connected_parts(coarse);
+  const Eigen::Vector3d edge = grid.cell_size().cwiseProduct(coarse.step().cast<double>());
+  std::vector<EvidencePart> parts = connected_parts(coarse, grid, edge);
   if (parts.empty()) return;
   // Specks are neither the object nor worth a bridge.
   constexpr double kSpeck = 0.02;
   std::size_t largest = 0;
-  for (const EvidencePart& part : parts) largest = std::max(largest, part.cells.size());
+  for (const EvidencePart& part : parts) largest = std::max(largest, part.cells_W.size());
   for (EvidencePart& part : parts) {
-    if (views.empty() || static_cast<double>(part.cells.size()) < kSpeck * static_cast<double>(largest)) continue;
-    part.shown = views.shown(places_of(part, grid, coarse.step()), 0.5 * config.join_m);
+    if (views.empty() || static_cast<double>(part.cells_W.size()) < kSpeck * static_cast<double>(largest)) continue;
+    part.shown = views.shown(part.cells_W, 0.5 * edge.x());
   }
   std::vector<char> kept(parts.size() + 1, 0);
   for (const std::size_t i : choose_parts(parts, views, config)) kept[i + 1] = 1;

@@ -1,11 +1,9 @@
 #include "mapper/associate/evidence_shape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "mapper/associate/evidence_parts.h"
@@ -65,7 +63,7 @@ struct Outline {
   double lowest = std::numeric_limits<double>::infinity();
 };
 
-Outline outline_of(const EvidenceGrid& grid, const std::vector<CellOwner>& owners) {
+Outline outline_of(const EvidenceGrid& grid, const std::vector<CellOwner>& owners, const EvidenceConfig& config) {
   const Eigen::Vector3i n = grid.size();
   const auto plane = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y());
   const auto is_mine = [&](int x, int y, int z) {
@@ -95,7 +93,7 @@ Outline outline_of(const EvidenceGrid& grid, const std::vector<CellOwner>& owner
       int count = 0;
       for (int z = std::max(0, top - 1); z <= std::min(n.z() - 1, top + 1); ++z) {
         const EvidenceCell& cell = grid.cell(x, y, z);
-        if (cell.object <= cell.other) continue;
+        if (!is_object(cell, config)) continue;
         const double bottom = grid.origin().z() + z * slice;
         if (std::abs(bottom + cell.z_sum / cell.object - height) > kOneSurface) continue;
         sum += cell.z_sum + bottom * cell.object;
@@ -197,7 +195,7 @@ std::optional<Cuboid> evidence_cuboid(const EvidenceGrid& grid, const BoxViews& 
   if (grid.empty()) return std::nullopt;
   std::vector<CellOwner> owners = owners_of(grid, support_z, config);
   keep_one_object(grid, owners, views, config);
-  Outline outline = outline_of(grid, owners);
+  Outline outline = outline_of(grid, owners, config);
   if (outline.tops.empty()) return std::nullopt;
 
   const double cell = grid.cell_size().x();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace waretwin {
@@ -80,23 +79,23 @@ class PartChoice {
   double mean_share(const std::vector<std::size_t>& chosen) const {
     double own = 0.0, cells = 0.0;
     for (const std::size_t i : chosen) {
-      own += parts_[i].share * static_cast<double>(parts_[i].cells.size());
-      cells += static_cast<double>(parts_[i].cells.size());
+      own += parts_[i].share * static_cast<double>(parts_[i].cells_W.size());
+      cells += static_cast<double>(parts_[i].cells_W.size());
     }
     return own / cells;
   }
 
   bool is_near(const std::vector<std::size_t>& chosen, std::size_t i) {
-    const double most = config_.bridge_m / config_.join_m;
-    return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t k) { return squared_gap(i, k) <= most * most; });
+    return std::any_of(chosen.begin(), chosen.end(),
+                       [&](std::size_t k) { return squared_gap(i, k) <= config_.bridge_m * config_.bridge_m; });
   }
 
-  // Between the nearest cells of two parts.
-  int squared_gap(std::size_t a, std::size_t b) {
-    const auto [gap, fresh] = gaps_.try_emplace(std::minmax(a, b), std::numeric_limits<int>::max());
+  // Between the nearest cells of two parts, square metres.
+  double squared_gap(std::size_t a, std::size_t b) {
+    const auto [gap, fresh] = gaps_.try_emplace(std::minmax(a, b), std::numeric_limits<double>::infinity());
     if (!fresh) return gap->second;
-    for (const Eigen::Vector3i& p : parts_[a].cells) {
-      for (const Eigen::Vector3i& q : parts_[b].cells) gap->second = std::min(gap->second, (p - q).squaredNorm());
+    for (const Eigen::Vector3f& p : parts_[a].cells_W) {
+      for (const Eigen::Vector3f& q : parts_[b].cells_W) gap->second = std::min<double>(gap->second, (p - q).squaredNorm());
     }
     return gap->second;
   }
@@ -104,7 +103,7 @@ class PartChoice {
   const std::vector<EvidencePart>& parts_;
   const BoxViews& views_;
   const EvidenceConfig& config_;
-  std::map<std::pair<std::size_t, std::size_t>, int> gaps_;
+  std::map<std::pair<std::size_t, std::size_t>, double> gaps_;
 };
 
 }  // namespace

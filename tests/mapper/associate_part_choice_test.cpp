@@ -15,9 +15,9 @@ class ChooseParts : public ::testing::Test {
  protected:
   ChooseParts() { views_.add({Pose::Identity(), Intrinsics::checked(640, 480, 500, 500, 320, 240), {100, 100, 100, 100}}); }
 
-  // `at`: of its only cell.
-  std::size_t add(const cv::Rect2f& shown, int at, double share = 1.0, double hits = 100.0) {
-    parts_.push_back({{Eigen::Vector3i(at, 0, 0)}, hits, share, {shown}});
+  // `at`: of its only cell, metres.
+  std::size_t add(const cv::Rect2f& shown, double at, double share = 1.0, double hits = 100.0) {
+    parts_.push_back({{Eigen::Vector3f(static_cast<float>(at), 0, 0)}, hits, share, {shown}});
     return parts_.size() - 1;
   }
   Chosen choose() const {
@@ -32,27 +32,27 @@ class ChooseParts : public ::testing::Test {
 };
 
 TEST_F(ChooseParts, TakesWhatMatchesNotWhatHasMostHits) {
-  add({0, 100, 400, 100}, 0, 1.0, 5000.0);
-  const std::size_t object = add({102, 101, 96, 98}, 5);
+  add({0, 100, 400, 100}, 0.0, 1.0, 5000.0);
+  const std::size_t object = add({102, 101, 96, 98}, 0.1);
   EXPECT_EQ(choose(), Chosen{object});
 }
 
 TEST_F(ChooseParts, JoinsPostsThatTouchNowhere) {
-  const std::size_t left = add({100, 100, 10, 100}, 0), right = add({190, 100, 10, 100}, 5);
+  const std::size_t left = add({100, 100, 10, 100}, 0.0), right = add({190, 100, 10, 100}, 0.1);
   EXPECT_EQ(choose(), (Chosen{left, right}));
 }
 
 TEST_F(ChooseParts, LeavesOutWhatTheBoxDoesNotNeed) {
   // A bottle beside it, inside its box; tried first or not, it stays out.
-  add({120, 190, 8, 10}, 3);
-  const std::size_t object = add({100, 100, 100, 100}, 5);
-  add({160, 150, 8, 10}, 3);
+  add({120, 190, 8, 10}, 0.06);
+  const std::size_t object = add({100, 100, 100, 100}, 0.1);
+  add({160, 150, 8, 10}, 0.06);
   EXPECT_EQ(choose(), Chosen{object});
 }
 
 TEST_F(ChooseParts, LeavesOutPiecesOfAWall) {
-  const std::size_t object = add({100, 100, 100, 70}, 5);
-  add({100, 150, 100, 50}, 10, 0.3);
+  const std::size_t object = add({100, 100, 100, 70}, 0.1);
+  add({100, 150, 100, 50}, 0.2, 0.3);
   EXPECT_EQ(choose(), Chosen{object});
   // All of it seen inside the box it would have joined.
   parts_.back().share = 1.0;
@@ -60,15 +60,15 @@ TEST_F(ChooseParts, LeavesOutPiecesOfAWall) {
 }
 
 TEST_F(ChooseParts, JoinsNothingFarAway) {
-  const int far = static_cast<int>(config_.bridge_m / config_.join_m) + 2;
-  const std::size_t object = add({100, 100, 100, 70}, 0);
+  const double far = config_.bridge_m + 0.05;
+  const std::size_t object = add({100, 100, 100, 70}, 0.0);
   add({100, 150, 100, 50}, far);
   EXPECT_EQ(choose(), Chosen{object});
 }
 
 TEST_F(ChooseParts, WithoutBoxesTheMostHitsDecide) {
-  add({100, 100, 100, 100}, 0, 1.0, 10.0);
-  const std::size_t most = add({}, 5, 0.2, 20.0);
+  add({100, 100, 100, 100}, 0.0, 1.0, 10.0);
+  const std::size_t most = add({}, 0.1, 0.2, 20.0);
   EXPECT_EQ(choose_parts(parts_, BoxViews(0), config_), Chosen{most});
 }
 
