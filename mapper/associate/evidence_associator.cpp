@@ -318,11 +318,11 @@ void EvidenceAssociator::drop_doubles(ObjectList& map) {
         ++k;
         continue;
       }
-      const auto match = [&](const MappedObject& mapped) {
+      const auto worth = [&](const MappedObject& mapped) {
         const BoxViews& views = tracks_.at(mapped.id).views;
-        return views.match(views.shown(mapped.cuboid));
+        return std::pair(views.match(views.shown(mapped.cuboid)), mapped.observations);
       };
-      if (match(map[k]) > match(map[i])) std::swap(map[i], map[k]);
+      if (worth(map[k]) > worth(map[i])) std::swap(map[i], map[k]);
       const int gone = map[k].id;
       merges_.emplace_back(gone, map[i].id);
       tracks_.erase(gone);

@@ -12,12 +12,12 @@
 
 namespace waretwin {
 
-// A detection is the mapped object of its class that holds the largest share of its points, at least min_overlap; within a frame pairs are
-// one to one. Its rays are added to the object's evidence grid, from which the cuboid is searched every shape_every observations and at
-// the end, ever less often as observations add up. Mapped objects that come to share most of the smaller one's volume, or of which one
-// explains the other's boxes, become one, the older id stays; but if a frame showed both side by side, the
-// better one alone stays at the end, or both if many frames did. At the end objects seen too seldom, and those
-// that frames in full view of them did not detect, are taken out.
+// A detection is the mapped object of its class that holds at least min_overlap of its points and has the largest sum of that share and of
+// the 2D IoU between both boxes; within a frame pairs are one to one. Its rays are added to the object's evidence grid, from which the
+// cuboid is searched every shape_every observations and at the end, ever less often as observations add up. Mapped objects that come to
+// share most of the smaller one's volume, or of which one explains the other's boxes, become one, the older id stays; but if a frame showed
+// both side by side, the better one alone stays at the end, or both if many frames did. At the end objects seen too seldom, and those that
+// frames in full view of them did not detect, are taken out.
 class EvidenceAssociator : public Associator {
  public:
   explicit EvidenceAssociator(const EvidenceConfig& config) : config_(config) {}
