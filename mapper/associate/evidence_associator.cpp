@@ -253,12 +253,12 @@ bool EvidenceAssociator::share_space(const MappedObject& one, const MappedObject
   return intersection_volume(around, other.cuboid) > 0.0 && (explains(one, other) || explains(other, one));
 }
 
-// What was seen beside the one is beside what it becomes.
+// What was seen beside the one is beside what it becomes. The two themselves never were: that forbids their merging.
 void EvidenceAssociator::keep_apart(int gone, int stays) {
   std::map<std::pair<int, int>, int> renamed;
   for (const auto& [pair, frames] : apart_) {
     const int a = pair.first == gone ? stays : pair.first, b = pair.second == gone ? stays : pair.second;
-    if (a != b) renamed[std::minmax(a, b)] += frames;
+    renamed[std::minmax(a, b)] += frames;
   }
   apart_ = std::move(renamed);
 }

@@ -13,8 +13,8 @@ namespace waretwin {
 struct EvidencePart {
   std::vector<Eigen::Vector3f> cells_W;  // their centres, metres
   double hits = 0.0;                     // of rays that speak for the object
-  double share =
-      1.0;           // in (0, 1]: of the cells of the body that it is a piece of. The rest was seen outside the boxes: a wall goes on there
+  // In (0, 1]: of the cells of the body that it is a piece of. The rest was seen outside the boxes: a wall goes on there.
+  double share = 1.0;
   ShownBoxes shown;  // where the views show it; empty where it is too small to matter
 };
 

@@ -14,13 +14,14 @@ namespace waretwin {
 namespace {
 
 using test::agiprobot;
+using test::in_quotes;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 std::string drive(const fs::path& out) {
-  return "run " + agiprobot() + " --quiet --frames 11 --out '" + out.string() +
-         "' --set sensors.cameras.camera.preset=azure_kinect_gaussian --set sensors.cameras.camera.rate_hz=2"
+  return "run " + agiprobot() + " --quiet --frames 11 --out " + in_quotes(out) +
+         " --set sensors.cameras.camera.preset=azure_kinect_gaussian --set sensors.cameras.camera.rate_hz=2"
          " --set sensors.cameras.camera.width=480 --set sensors.cameras.camera.height=270 --set robot.speed_mps=1"
          " --set robot.acceleration_mps2=1 --set robot.turn_rate_deg_s=90 --set robot.turn_acceleration_deg_s2=180 ";
 }

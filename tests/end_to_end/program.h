@@ -27,7 +27,10 @@ inline ProgramResult waretwin(const std::string& arguments, const std::string& p
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
 
-inline std::string agiprobot() { return "'" + (repository() / "scenes/agiprobot/scenario.yaml").string() + "'"; }
+// A path as one word of a shell's line.
+inline std::string in_quotes(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
+
+inline std::string agiprobot() { return in_quotes(repository() / "scenes/agiprobot/scenario.yaml"); }
 
 }  // namespace waretwin::test
 

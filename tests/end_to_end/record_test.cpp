@@ -9,11 +9,10 @@ namespace waretwin {
 namespace {
 
 using test::agiprobot;
+using test::in_quotes;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
-
-std::string in_quotes(const fs::path& path) { return "'" + path.string() + "'"; }
 
 std::string digest_in(const std::string& text) {
   const auto at = text.find("digest ");

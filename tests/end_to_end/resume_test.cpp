@@ -11,11 +11,10 @@ namespace waretwin {
 namespace {
 
 using test::agiprobot;
+using test::in_quotes;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
-
-std::string in_quotes(const fs::path& path) { return "'" + path.string() + "'"; }
 
 struct Object {
   std::string class_name;
