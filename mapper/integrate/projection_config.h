@@ -12,6 +12,7 @@ struct ProjectionConfig {
   bool plane_distance = true;
   bool reject_edges = true;
   bool incidence_weight = true;
+  double grow_weight = 0.3;
   double behind_voxels = 2.0;
   double along_truncations = 2.0;
   bool forget = true;
@@ -28,6 +29,9 @@ struct ProjectionConfig {
     f("plane_distance", plane_distance, "distances are taken across the patch's plane; false: along the optical axis");
     f("reject_edges", reject_edges, "no surface from patches that lie between two depths or alone (flying pixels)");
     f("incidence_weight", incidence_weight, "a patch weighs by the cosine of its incidence");
+    f("grow_weight", grow_weight,
+      "a patch without a surface takes over its nearest neighbour's at this share of the weight, so that rims are whole; 0: never",
+      {.min = 0, .max = 1});
     f("behind_voxels", behind_voxels, "distances are kept up to this many voxels behind a surface", {.min = 1, .max = 32});
     f("along_truncations", along_truncations,
       "voxels farther from the surface than this many truncation distances, in depth, are left alone, however near to its plane",

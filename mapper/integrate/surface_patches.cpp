@@ -16,6 +16,7 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr int kLargest = 8;  // pixels along a patch
 constexpr std::size_t kRowsPerPiece = 6;
+constexpr float kGrowthVoxels = 2.0f;
 // One pixel strays about as far as the mean of its patch times this.
 constexpr float kPixelNoise = 3.0f;
 
@@ -170,6 +171,7 @@ class Patching {
     const double steepest = to_radians(config.projection.max_incidence_deg);
     // Largest change of depth from pixel to pixel, as a share of depth.
     steep_share_ = static_cast<float>(std::tan(steepest) / std::min(intrinsics.fx, intrinsics.fy));
+    farthest_growth_ = kGrowthVoxels * static_cast<float>(config.voxel_m);
     least_count_ = static_cast<float>(std::max(1, side_ * side_ / 4));
     const ProjectionConfig& p = config.projection;
     rules_ = {static_cast<float>(intrinsics.fx),  static_cast<float>(intrinsics.fy), static_cast<float>(intrinsics.cx),
@@ -197,6 +199,7 @@ class Patching {
       Planes planes(static_cast<std::size_t>(width_));
       for (std::size_t y = begin; y < end; ++y) plane_row(static_cast<int>(y), planes);
     });
+    if (config_.projection.grow_weight > 0.0) grow();
     return std::move(result_);
   }
 
@@ -407,13 +410,62 @@ class Patching {
     }
   }
 
+  // A patch seen so flat or from so far that it covers more than two voxels would reach far over the rim.
+  bool may_grow(const SurfacePatch& patch, int x, int y) const {
+    const auto middle = 0.5f * static_cast<float>(side_ - 1);
+    const float rx = (static_cast<float>(x * side_) + middle - rules_.cx) / rules_.fx;
+    const float ry = (static_cast<float>(y * side_) + middle - rules_.cy) / rules_.fy;
+    const float cosine = std::abs(patch.nx * rx + patch.ny * ry + patch.nz) / std::sqrt(rx * rx + ry * ry + 1.0f);
+    return static_cast<float>(side_) * patch.depth / rules_.fx <= farthest_growth_ * cosine;
+  }
+
+  // The rims: patches without a surface get the nearest neighbour's, at a low weight.
+  void grow() {
+    struct Rim {
+      std::size_t to, from;
+    };
+    constexpr std::array<std::array<int, 2>, 4> kBeside = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+    // Found for the whole picture before any is filled, so that no surface grows twice.
+    std::vector<std::vector<Rim>> pieces((static_cast<std::size_t>(height_) + kRowsPerPiece - 1) / kRowsPerPiece);
+    const auto index = [&](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    };
+    parallel_for(static_cast<std::size_t>(height_), kRowsPerPiece, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        const auto y = static_cast<int>(row);
+        for (int x = 0; x < width_; ++x) {
+          if (result_.at(x, y).weight > 0.0f) continue;
+          float nearest = kFar;
+          Rim rim{index(x, y), 0};
+          for (const auto& [dx, dy] : kBeside) {
+            if (x + dx < 0 || x + dx >= width_ || y + dy < 0 || y + dy >= height_) continue;
+            const SurfacePatch& beside = result_.at(x + dx, y + dy);
+            if (beside.weight <= 0.0f || beside.depth >= nearest || !may_grow(beside, x + dx, y + dy)) continue;
+            nearest = beside.depth;
+            rim.from = index(x + dx, y + dy);
+          }
+          if (nearest < kFar) pieces[begin / kRowsPerPiece].push_back(rim);
+        }
+      }
+    });
+    const auto share = static_cast<float>(config_.projection.grow_weight);
+    for (const std::vector<Rim>& piece : pieces) {
+      for (const Rim& rim : piece) {
+        SurfacePatch patch = result_.patches[rim.from];
+        patch.weight *= share;
+        result_.planes[rim.to] = {patch.nx, patch.ny, patch.nz, patch.h};
+        result_.patches[rim.to] = patch;
+      }
+    }
+  }
+
   const RgbdFrame& frame_;
   const Intrinsics& intrinsics_;
   const std::vector<std::int32_t>& labels_;
   const TsdfConfig& config_;
   int side_ = 0, width_ = 0, height_ = 0;
   std::size_t stride_ = 0;
-  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_count_ = 1.0f;
+  float max_depth_ = 0.0f, noise_ = 0.0f, steep_share_ = 0.0f, least_count_ = 1.0f, farthest_growth_ = 0.0f;
   PlaneRules rules_{};
   Means means_;
   PatchImage result_;

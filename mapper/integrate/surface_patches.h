@@ -8,6 +8,9 @@
 //   3. the slopes averaged with those neighbours that lie on the same plane.
 // A patch makes no surface when it is seen flatter than max_incidence, when fewer than two of its eight neighbours lie on its plane, or
 // when its own pixels spread more than its slope explains: flying pixels between two surfaces fail one of these.
+//   4. beside a surface (above, below, left, right), a patch without one takes over the nearest such neighbour's, with label and colour, at
+//      a small share of its weight (grow_weight): no patch else shows the voxels at the rim of a thing, and a mesh needs all eight corners
+//      of a cell. Not from neighbours that cover more than two voxels, which would reach far. Measurements of other frames outweigh it.
 #pragma once
 
 #include <cstdint>

@@ -58,6 +58,7 @@ TEST(SurfacePatches, LieInAPlaneSeenAtAnyAngle) {
   scene.room.low = {-50, -50, 0};
   scene.room.high = {50, 50, 50};
   TsdfConfig config = projection_config();
+  config.projection.grow_weight = 0.0;
   for (const double ahead : {0.1, 1.0, 3.0}) {
     const Pose X_WC = look_at({0, 0, 1.4}, {0, ahead, 0});
     const PatchImage image = make_patches(view(scene, camera, X_WC, false).frame, camera, {}, config);
@@ -106,10 +107,49 @@ TEST(SurfacePatches, MakeNoSurfaceOfFlyingPixels) {
   }
 }
 
+// A plate before nothing.
+TEST(SurfacePatches, GrowByOneOverTheRim) {
+  const Intrinsics camera = Intrinsics::from_field_of_view(1280, 720, to_radians(90), to_radians(59));
+  RgbdFrame frame;
+  frame.depth = cv::Mat(720, 1280, CV_32FC1, cv::Scalar(0.0f));
+  frame.colour = cv::Mat(720, 1280, CV_8UC3, cv::Scalar(10, 20, 30));
+  frame.depth(cv::Rect(400, 200, 400, 300)).setTo(1.5f);  // patches of 4 pixels: columns 100 to 199, rows 50 to 124
+  std::vector<std::int32_t> labels(std::size_t{1280} * 720, 7);
+  TsdfConfig config = projection_config();
+  config.projection.patch_px = 4;
+  config.projection.grow_weight = 0.0;
+  const PatchImage measured = make_patches(frame, camera, labels, config);
+  config.projection.grow_weight = 0.1;
+  const PatchImage grown = make_patches(frame, camera, labels, config);
+  int rim = 0;
+  for (int y = 0; y < grown.height; ++y) {
+    for (int x = 0; x < grown.width; ++x) {
+      const bool across = x >= 100 && x < 200, down = y >= 50 && y < 125;
+      const bool beside = (across && (y == 49 || y == 125)) || (down && (x == 99 || x == 200));
+      const SurfacePatch& patch = grown.at(x, y);
+      ASSERT_EQ(measured.at(x, y).weight > 0.0f, across && down) << x << " " << y;
+      if (across && down) {
+        ASSERT_EQ(patch.weight, measured.at(x, y).weight);
+      } else if (beside) {
+        const SurfacePatch& from = grown.at(std::clamp(x, 100, 199), std::clamp(y, 50, 124));
+        ASSERT_FLOAT_EQ(patch.weight, 0.1f * from.weight);
+        ASSERT_NEAR(patch.h, 1.5f, 1e-4f);
+        ASSERT_EQ(patch.label, 7);
+        ASSERT_EQ(patch.red, 30);
+        ++rim;
+      } else {
+        ASSERT_EQ(patch.weight, 0.0f) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_EQ(rim, 2 * 100 + 2 * 75);
+}
+
 TEST(SurfacePatches, CarryTheLabelOfMostOfTheirPixels) {
   const Intrinsics camera = Intrinsics::from_field_of_view(323, 181, to_radians(80), to_radians(50));
   TsdfConfig config = projection_config();
   config.projection.patch_px = 4;
+  config.projection.grow_weight = 0.0;
   const Pose X_WC = look_at({-0.31, -1.13, 1.37}, {0.113, 0.913, 0.427});
   const LabelledFrame in = view(BoxScene(), camera, X_WC, true);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
