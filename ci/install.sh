@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates
   libembree-dev libtinygltf-dev libeigen3-dev libopencv-dev libpcl-dev libbullet-dev
   libtbb-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libspdlog-dev librandom123-dev
-  libgtest-dev libbenchmark-dev zlib1g-dev
+  libgtest-dev libbenchmark-dev zlib1g-dev libssl-dev
   liboctomap-dev  # optional: without it no octomap.bt is written
 )
 for argument in "$@"; do

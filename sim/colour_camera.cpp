@@ -58,7 +58,7 @@ PictureRays ColourCamera::picture_rays(Stamp stamp, const std::function<Pose(Sta
   return out;
 }
 
-FrameImages ColourCamera::look(Stamp stamp, const std::function<Pose(Stamp)>& X_WC, bool colour, bool classes) {
+FrameImages ColourCamera::look(Stamp stamp, const std::function<Pose(Stamp)>& X_WC, bool colour, bool classes, bool depth) {
   RenderRequest request;
   request.colour = colour;
   request.classes = classes;
@@ -90,6 +90,10 @@ FrameImages ColourCamera::look(Stamp stamp, const std::function<Pose(Stamp)>& X_
     if (classes) images.classes = rectification_->labels(images.classes);
   }
 
+  if (!depth) {
+    images.depth.release();
+    return images;
+  }
   const float time_now = renderer_.ray_caster().time_of(stamp);
   const bool at_once = std::all_of(taken.begin(), taken.end(), [&](const PixelRays::Row& row) {
     return row.X_WC.matrix() == X_WC_now.matrix() && row.middle == time_now;

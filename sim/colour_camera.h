@@ -36,8 +36,8 @@ class ColourCamera {
   //   apart: it agrees with the colours of a camera that stands still, and else with RgbdFrame::depth.
   // - normals are not made.
   // Rays travel at their own times (Ray::time) within the ray caster's shutter; in quality fast, blur is that of the camera's motion alone.
-  // Without any effect the colours are those of Renderer::render.
-  FrameImages look(Stamp stamp, const std::function<Pose(Stamp)>& X_WC, bool colour, bool classes = false);
+  // Without any effect the colours are those of Renderer::render. Without `depth`, which costs a look of its own, there is none.
+  FrameImages look(Stamp stamp, const std::function<Pose(Stamp)>& X_WC, bool colour, bool classes = false, bool depth = true);
 
   // The rays that gave the pixels of look's instance image their ids, in CameraConfig::view; beyond the picture those of a pinhole camera
   // at the stamp. Valid as long as this camera and while the shutter is the same.

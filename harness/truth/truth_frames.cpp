@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "harness/pictures/rasteriser.h"
+#include "harness/truth/mask_codes.h"
 
 namespace waretwin {
 
@@ -55,29 +56,6 @@ void draw_dashed(cv::Mat& image, const cv::Rect& box, const cv::Scalar& colour) 
 void TruthFramesConfig::visit(Fields& f) {
   f("enabled", enabled, "truth_frames.jsonl and pictures of it: what each mapped frame shows of every true object");
   f("masks", masks, "with amodal masks");
-}
-
-std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size) {
-  WARETWIN_CHECK(mask.type() == CV_8UC1 && mask.size() == place.size() && (place & cv::Rect(cv::Point(), size)) == place,
-                 "a mask inside its picture");
-  std::vector<int> runs = {0};
-  bool ones = false;
-  const auto add = [&](bool value, int count) {
-    if (count == 0) return;
-    if (value != ones) {
-      runs.push_back(0);
-      ones = value;
-    }
-    runs.back() += count;
-  };
-  add(false, place.x * size.height);
-  for (int u = 0; u < place.width; ++u) {
-    add(false, place.y);
-    for (int v = 0; v < place.height; ++v) add(mask.at<std::uint8_t>(v, u) != 0, 1);
-    add(false, size.height - place.y - place.height);
-  }
-  add(false, (size.width - place.x - place.width) * size.height);
-  return runs;
 }
 
 std::string truth_frame_line(const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene, bool masks) {

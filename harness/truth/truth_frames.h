@@ -21,10 +21,6 @@ struct TruthFramesConfig {
 // One line of JSON, with its line feed. docs/truth.md describes the keys.
 std::string truth_frame_line(const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene, bool masks);
 
-// A mask as COCO's uncompressed run lengths: pixels column by column, counts of zeros and of others in turn, beginning with zeros.
-// `mask` (CV_8UC1) stands at `place` in a picture of size `size` that is zero elsewhere.
-std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size);
-
 // Instances in colours over the darkened picture (CV_8UC3, BGR) with a margin around it; each object's visible box (solid), amodal box
 // (dashed) and shares in percent. As large as the picture.
 cv::Mat draw_truth(const cv::Mat& colour, const FrameTruth& truth, const std::vector<ObjectView>& views, const Scene& scene);

@@ -1,0 +1,25 @@
+#include "core/checksum.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+
+#include "core/error.h"
+
+namespace waretwin {
+
+std::string sha256(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned int size = 0;
+  const bool done = EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) == 1;
+  WARETWIN_CHECK(done && size == 32, "OpenSSL knows SHA-256");
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i) {
+    text += kDigits[digest[i] >> 4];
+    text += kDigits[digest[i] & 15];
+  }
+  return text;
+}
+
+}  // namespace waretwin

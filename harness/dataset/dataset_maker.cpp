@@ -1,0 +1,198 @@
+#include "harness/dataset/dataset_maker.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <future>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+
+#include "core/checksum.h"
+#include "core/config.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "harness/dataset/dataset_index.h"
+#include "harness/dataset/hall_photographer.h"
+#include "harness/run/run_config.h"
+#include "sensors/measurements.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kWaitingFiles = 4;  // pictures that are encoded while the next ones are made
+
+std::vector<std::string> classes_of(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources) {
+  std::set<std::string> all;
+  for (const auto& source : sources) {
+    const std::vector<std::string> names = source->classes();
+    all.insert(names.begin(), names.end());
+  }
+  if (all.empty()) throw Error("no hall has an object to be labelled; expected truth rules or extras that name a class");
+  if (config.classes.empty()) return {all.begin(), all.end()};
+  for (const std::string& name : config.classes) {
+    if (all.contains(name)) continue;
+    std::string known;
+    for (const std::string& k : all) known += (known.empty() ? "" : ", ") + k;
+    throw Error("dataset.classes: no hall has an object of class '" + name + "'; expected some of " + known);
+  }
+  return config.classes;
+}
+
+// What makes two sets the same, as text: dataset.yaml.
+std::string description(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources,
+                        const DatasetFormats& formats) {
+  struct {
+    DatasetConfig config;
+    void visit(Fields& f) { f.group("dataset", config, "a set of training pictures"); }
+  } tree{config};
+  std::string about = std::string("formats") + (formats.yolo ? " yolo" : "") + (formats.coco ? " coco" : "");
+  for (const auto& source : sources) about += "; " + source->description();
+  return resolved_config([&](Fields& f) { tree.visit(f); }, about);
+}
+
+// A folder belongs to one set: its dataset.yaml says which.
+void claim(const fs::path& folder, const std::string& text) {
+  const fs::path file = folder / "dataset.yaml";
+  if (fs::exists(file)) {
+    if (read_file(file) != text) {
+      throw Error(file, "is of a set with other settings, halls or formats; expected the same as before, or a new folder");
+    }
+    return;
+  }
+  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
+    throw Error(folder, "is no set of training pictures (it has no dataset.yaml); expected a new name or an empty folder");
+  }
+  make_folder(folder);
+  write_file(file, text);
+}
+
+std::string darknet_labels(const ImageRecord& image) {
+  std::string text;
+  const double width = image.intrinsics.width, height = image.intrinsics.height;
+  for (const ImageLabel& label : image.labels.labels) {
+    char line[128];
+    std::snprintf(line, sizeof line, "%d %.7f %.7f %.7f %.7f\n", label.class_index, (label.box.x + 0.5 * label.box.width) / width,
+                  (label.box.y + 0.5 * label.box.height) / height, label.box.width / width, label.box.height / height);
+    text += line;
+  }
+  return text;
+}
+
+// Encodes and writes a picture's files; its record with their checksums.
+ImageRecord write_photograph(const Photograph& photograph, const fs::path& folder, const DatasetConfig& config,
+                             const DatasetFormats& formats) {
+  ImageRecord record = photograph.record;
+  const auto write = [&](const std::string& name, std::string_view bytes) {
+    write_file(folder / name, bytes);
+    record.files[name] = sha256(bytes);
+  };
+  const auto write_image = [&](const std::string& name, const cv::Mat& image, const std::vector<int>& parameters) {
+    std::vector<unsigned char> bytes;
+    if (!cv::imencode(fs::path(name).extension().string(), image, bytes, parameters))
+      throw InternalError("a picture could not be encoded: " + name);
+    write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  write_image("images/" + record.name + ".jpg", photograph.colour, {cv::IMWRITE_JPEG_QUALITY, config.jpeg_quality});
+  if (config.depth) write_image("depth/" + record.name + ".png", depth_to_millimetres(photograph.depth), {});
+  if (config.instances) write_image("instances/" + record.name + ".png", photograph.instances, {});
+  if (formats.yolo) write("labels/" + record.name + ".txt", darknet_labels(record));
+  return record;
+}
+
+}  // namespace
+
+std::vector<std::string> split_halls(int halls, double valid_share, double test_share) {
+  // Each hall goes to the split that is farthest behind its share; validation comes first, so that small sets have some.
+  const double shares[] = {1.0 - valid_share - test_share, valid_share, test_share};
+  const char* const names[] = {"train", "valid", "test"};
+  int counts[] = {0, 0, 0};
+  std::vector<std::string> splits;
+  for (int h = 0; h < halls; ++h) {
+    int most = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (shares[k] * (h + 1) - counts[k] > shares[most] * (h + 1) - counts[most] + 1e-9) most = k;
+    }
+    ++counts[most];
+    splits.emplace_back(names[most]);
+  }
+  return splits;
+}
+
+DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources, const fs::path& folder,
+                            const DatasetFormats& formats, const Shard& shard, const std::function<void(const DatasetProgress&)>& step) {
+  WARETWIN_CHECK(!sources.empty() && shard.count > 0 && shard.index >= 0 && shard.index < shard.count, "halls and a shard of them");
+  const std::vector<std::string> classes = classes_of(config, sources);
+  const std::string text = description(config, sources, formats);
+  claim(folder, text);
+  make_folder(folder / "halls");
+  make_folder(folder / "images");
+  if (formats.yolo) make_folder(folder / "labels");
+  if (config.depth) make_folder(folder / "depth");
+  if (config.instances) make_folder(folder / "instances");
+
+  const int halls = (config.count + config.images_per_hall - 1) / config.images_per_hall;
+  const std::vector<std::string> splits = split_halls(halls, config.valid_share, config.test_share);
+  const auto first_image = [&](int number) { return number * config.images_per_hall; };
+  const auto images_of = [&](int number) { return std::min(config.images_per_hall, config.count - first_image(number)); };
+  DatasetProgress progress;
+  std::deque<int> to_do;
+  for (int number = shard.index; number < halls; number += shard.count) {
+    progress.of += images_of(number);
+    if (fs::exists(folder / record_name(number))) {
+      progress.found += images_of(number);
+    } else {
+      to_do.push_back(number);
+    }
+  }
+  progress.done = progress.found;
+  if (step) step(progress);
+
+  struct Prepared {
+    std::string hall;
+    std::unique_ptr<HallPhotographer> photographer;
+  };
+  const auto prepare = [&](int number) {
+    const Hall hall = sources[static_cast<std::size_t>(number) % sources.size()]->hall(static_cast<std::uint64_t>(number));
+    return Prepared{hall.name, std::make_unique<HallPhotographer>(hall, config, classes, number)};
+  };
+  // A hall is made ready while pictures of the one before are taken: much of that is work for one thread.
+  const auto how = thread_count() == 1 ? std::launch::deferred : std::launch::async;
+  std::future<Prepared> coming;
+  if (!to_do.empty()) coming = std::async(how, prepare, to_do.front());
+  while (!to_do.empty()) {
+    const int number = to_do.front();
+    to_do.pop_front();
+    Prepared now = coming.get();
+    if (!to_do.empty()) coming = std::async(how, prepare, to_do.front());
+    HallRecord record;
+    record.number = number;
+    record.hall = now.hall;
+    record.split = splits[static_cast<std::size_t>(number)];
+    std::deque<std::future<ImageRecord>> writing;
+    const auto take_written = [&] {
+      record.images.push_back(writing.front().get());
+      writing.pop_front();
+    };
+    for (int i = 0; i < images_of(number); ++i) {
+      Photograph photograph = now.photographer->take(first_image(number) + i);
+      writing.push_back(std::async(
+          how, [&folder, &config, &formats, taken = std::move(photograph)] { return write_photograph(taken, folder, config, formats); }));
+      if (writing.size() > kWaitingFiles) take_written();
+      ++progress.done;
+      if (step) step(progress);
+    }
+    while (!writing.empty()) take_written();
+    write_file(folder / record_name(number), to_json(record));
+  }
+
+  DatasetSummary summary;
+  for (int number = 0; number < halls; ++number) summary.missing_halls += !fs::exists(folder / record_name(number));
+  if (summary.missing_halls > 0) return summary;
+  return write_index(folder, halls, classes, formats, sha256(text));
+}
+
+}  // namespace waretwin
