@@ -33,8 +33,10 @@ CocoFile::CocoFile(fs::path file, const std::vector<std::string>& classes, const
     : file_(std::move(file)),
       images_file_(part_of(file_, "images")),
       annotations_file_(part_of(file_, "annotations")),
+      left_out_file_(part_of(file_, "left_out")),
       images_(images_file_),
-      annotations_(annotations_file_) {
+      annotations_(annotations_file_),
+      left_out_(left_out_file_) {
   Json categories = Json::array();
   for (std::size_t i = 0; i < classes.size(); ++i) categories.push_back({{"id", i + 1}, {"name", classes[i]}, {"supercategory", "object"}});
   head_ =
@@ -45,6 +47,7 @@ CocoFile::~CocoFile() {
   std::error_code ignored;
   fs::remove(images_file_, ignored);
   fs::remove(annotations_file_, ignored);
+  fs::remove(left_out_file_, ignored);
 }
 
 void CocoFile::add(const ImageRecord& image, const std::string& hall) {
@@ -80,17 +83,29 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
     annotations_.append((annotation_count_ > 0 ? ",\n" : "") + annotation.dump());
     ++annotation_count_;
   }
+  for (const LeftOut& object : image.labels.left_out) {
+    Json left_out;
+    left_out["image_id"] = image.index + 1;
+    left_out["category_id"] = object.class_index + 1;
+    left_out["bbox"] = box_json(object.box);
+    left_out["why"] = to_text(object.why);
+    left_out_.append((any_left_out_ ? ",\n" : "") + left_out.dump());
+    any_left_out_ = true;
+  }
 }
 
 void CocoFile::finish() {
   images_.close();
   annotations_.close();
+  left_out_.close();
   write_file_by(file_, [&](const fs::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out << head_ << ",\n\"images\":[\n";
     append_file(out, images_file_);
     out << "\n],\n\"annotations\":[\n";
     append_file(out, annotations_file_);
+    out << "\n],\n\"left_out\":[\n";
+    append_file(out, left_out_file_);
     out << "\n]}\n";
     out.close();
     if (!out) throw Error(file_, "could not be written; is the disk full?");

@@ -71,8 +71,7 @@ DatasetSummary write_index(const fs::path& folder, int halls, const std::vector<
       ++images_of_kind[image.kind];
       summary.empty += image.labels.labels.empty();
       for (const ImageLabel& label : image.labels.labels) ++summary.labels.at(static_cast<std::size_t>(label.class_index));
-      summary.hidden += image.labels.left_out.hidden;
-      summary.small += image.labels.left_out.small;
+      for (const LeftOut& object : image.labels.left_out) ++(object.why == LeftOut::Why::kSmall ? summary.small : summary.hidden);
       sums.insert(image.files.begin(), image.files.end());
       lists[record.split] += "images/" + image.name + ".jpg\n";
       if (formats.coco) coco.at(record.split)->add(image, record.hall);

@@ -70,13 +70,15 @@ void claim(const fs::path& folder, const std::string& text) {
   write_file(file, text);
 }
 
-std::string darknet_labels(const ImageRecord& image) {
+// Class, and the box's middle and size as shares of the picture; for labels, and for objects that are left out.
+template <class Objects>
+std::string darknet_lines(const Objects& objects, const Intrinsics& intrinsics) {
   std::string text;
-  const double width = image.intrinsics.width, height = image.intrinsics.height;
-  for (const ImageLabel& label : image.labels.labels) {
+  const double width = intrinsics.width, height = intrinsics.height;
+  for (const auto& object : objects) {
     char line[128];
-    std::snprintf(line, sizeof line, "%d %.7f %.7f %.7f %.7f\n", label.class_index, (label.box.x + 0.5 * label.box.width) / width,
-                  (label.box.y + 0.5 * label.box.height) / height, label.box.width / width, label.box.height / height);
+    std::snprintf(line, sizeof line, "%d %.7f %.7f %.7f %.7f\n", object.class_index, (object.box.x + 0.5 * object.box.width) / width,
+                  (object.box.y + 0.5 * object.box.height) / height, object.box.width / width, object.box.height / height);
     text += line;
   }
   return text;
@@ -99,7 +101,11 @@ ImageRecord write_photograph(const Photograph& photograph, const fs::path& folde
   write_image("images/" + record.name + ".jpg", photograph.colour, {cv::IMWRITE_JPEG_QUALITY, config.jpeg_quality});
   if (config.depth) write_image("depth/" + record.name + ".png", depth_to_millimetres(photograph.depth), {});
   if (config.instances) write_image("instances/" + record.name + ".png", photograph.instances, {});
-  if (formats.yolo) write("labels/" + record.name + ".txt", darknet_labels(record));
+  if (formats.yolo) {
+    write("labels/" + record.name + ".txt", darknet_lines(record.labels.labels, record.intrinsics));
+    // Darknet has no word for it; `waretwin train` and `detect` read these as neither objects nor background.
+    write("ignored/" + record.name + ".txt", darknet_lines(record.labels.left_out, record.intrinsics));
+  }
   return record;
 }
 
@@ -131,6 +137,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   make_folder(folder / "halls");
   make_folder(folder / "images");
   if (formats.yolo) make_folder(folder / "labels");
+  if (formats.yolo) make_folder(folder / "ignored");
   if (config.depth) make_folder(folder / "depth");
   if (config.instances) make_folder(folder / "instances");
 

@@ -123,8 +123,7 @@ Photograph HallPhotographer::take(int index) {
     }
     Photograph photograph = s.take(*view, index);
     // The sampler looks between an empty view's rays.
-    const LeftOut& left_out = photograph.record.labels.left_out;
-    const bool slipped_in = !photograph.record.labels.labels.empty() || left_out.hidden + left_out.small > 0;
+    const bool slipped_in = !photograph.record.labels.labels.empty() || !photograph.record.labels.left_out.empty();
     if (kind != ViewKind::kEmpty || !slipped_in) return photograph;
     if (tried == kTriesForEmpty) kind = ViewKind::kRoute;
   }

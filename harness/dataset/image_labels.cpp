@@ -16,17 +16,15 @@ ImageLabels label_objects(const std::vector<ObjectView>& views, const cv::Mat& i
     WARETWIN_CHECK(object != scene.objects.end(), "a view is of an object of the scene");
     const auto named = std::find(classes.begin(), classes.end(), object->class_name);
     if (named == classes.end()) continue;
-    if (std::max(view.visible_box.width, view.visible_box.height) < rule.min_side_px) {
-      ++result.left_out.small;
-      continue;
-    }
-    if (view.visible() < rule.min_visible) {
-      ++result.left_out.hidden;
+    const auto class_index = static_cast<int>(named - classes.begin());
+    const bool small = std::max(view.visible_box.width, view.visible_box.height) < rule.min_side_px;
+    if (small || view.visible() < rule.min_visible) {
+      result.left_out.push_back({view.id, class_index, view.visible_box, small ? LeftOut::Why::kSmall : LeftOut::Why::kHidden});
       continue;
     }
     ImageLabel label;
     label.object_id = view.id;
-    label.class_index = static_cast<int>(named - classes.begin());
+    label.class_index = class_index;
     label.box = view.visible_box;
     label.area_px = view.visible_px;
     label.visible = view.visible();

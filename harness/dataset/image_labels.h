@@ -23,15 +23,18 @@ struct ImageLabel {
   std::string runs;                                       // compressed
 };
 
-// Visible objects without a label, by why.
+// A visible object without a label: neither to be found nor a mistake if found.
 struct LeftOut {
-  int hidden = 0;  // too little of it visible
-  int small = 0;   // too few pixels
+  enum class Why { kHidden, kSmall };  // too little of it visible; too few pixels
+  int object_id = 0;
+  int class_index = 0;
+  cv::Rect box;  // of the visible pixels
+  Why why = Why::kHidden;
 };
 
 struct ImageLabels {
-  std::vector<ImageLabel> labels;  // in the order of the scene's objects
-  LeftOut left_out;
+  std::vector<ImageLabel> labels;  // both in the order of the scene's objects
+  std::vector<LeftOut> left_out;
 };
 
 // `instances`: the picture's instance image, `views` what it shows of each object. Objects of other classes are passed over.

@@ -26,7 +26,11 @@ Json image_json(const ImageRecord& image) {
   json["size"] = {k.width, k.height};
   json["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
   json["X_WC"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
-  json["left_out"] = {{"hidden", image.labels.left_out.hidden}, {"small", image.labels.left_out.small}};
+  json["left_out"] = Json::array();
+  for (const LeftOut& object : image.labels.left_out) {
+    json["left_out"].push_back(
+        {{"id", object.object_id}, {"class", object.class_index}, {"box", box_json(object.box)}, {"why", to_text(object.why)}});
+  }
   json["labels"] = Json::array();
   for (const ImageLabel& label : image.labels.labels) {
     json["labels"].push_back({{"id", label.object_id},
@@ -53,7 +57,10 @@ ImageRecord image_from(const Json& json) {
   image.intrinsics = {size.at(0), size.at(1), k.at(0), k.at(1), k.at(2), k.at(3)};
   image.X_WC.translation() = Eigen::Vector3d(x.at(0), x.at(1), x.at(2));
   image.X_WC.linear() = Eigen::Quaterniond(x.at(6), x.at(3), x.at(4), x.at(5)).normalized().toRotationMatrix();
-  image.labels.left_out = {json.at("left_out").at("hidden"), json.at("left_out").at("small")};
+  for (const Json& entry : json.at("left_out")) {
+    const LeftOut::Why why = entry.at("why") == to_text(LeftOut::Why::kSmall) ? LeftOut::Why::kSmall : LeftOut::Why::kHidden;
+    image.labels.left_out.push_back({entry.at("id"), entry.at("class"), box_from(entry.at("box")), why});
+  }
   for (const Json& entry : json.at("labels")) {
     ImageLabel label;
     label.object_id = entry.at("id");
@@ -73,6 +80,8 @@ ImageRecord image_from(const Json& json) {
 }
 
 }  // namespace
+
+const char* to_text(LeftOut::Why why) { return why == LeftOut::Why::kSmall ? "small" : "hidden"; }
 
 std::filesystem::path record_name(int number) {
   char name[32];

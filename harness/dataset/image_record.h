@@ -30,6 +30,8 @@ struct HallRecord {
   std::vector<ImageRecord> images;
 };
 
+const char* to_text(LeftOut::Why why);
+
 // Name of hall `number`'s record in the set's folder.
 std::filesystem::path record_name(int number);
 

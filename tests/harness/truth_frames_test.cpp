@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "harness/truth/mask_codes.h"
 #include "harness/truth/sensor_poses.h"
 
 namespace waretwin {
