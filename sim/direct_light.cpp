@@ -27,11 +27,6 @@ Four root(const Four& x) { return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sq
 
 }  // namespace
 
-Eigen::Vector3f lifted(const SurfacePoint& point) {
-  const float size = point.position.cwiseAbs().maxCoeff();
-  return point.position + (2e-4f + 4e-6f * size) * point.face_normal;
-}
-
 Eigen::Vector2f circle(float turn) {
   constexpr std::size_t kSteps = 1024;
   static const auto table = [] {

@@ -51,7 +51,10 @@ class DirectLight {
 };
 
 // Where rays that leave a surface start: a little above it, so that they don't meet it again.
-Eigen::Vector3f lifted(const SurfacePoint& point);
+inline Eigen::Vector3f lifted(const SurfacePoint& point) {
+  const float size = point.position.cwiseAbs().maxCoeff();
+  return point.position + (2e-4f + 4e-6f * size) * point.face_normal;
+}
 
 // Cosine and sine of a turn in [0, 1), in steps of 1/1024.
 Eigen::Vector2f circle(float turn);

@@ -122,10 +122,10 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
     if (point.normal.dot(point.face_normal) < 0.0f) point.normal = -point.normal;
   }
 
-  point.base_colour = material.base_colour.head<3>();
+  // Four at once: three floats that are written one by one and read two by two wait for the memory.
+  Eigen::Vector4f base_colour = material.base_colour;
   if (!mesh.colours.empty()) {
-    point.base_colour = point.base_colour.cwiseProduct(
-        (c.w[0] * mesh.colours[c.i[0]] + c.w[1] * mesh.colours[c.i[1]] + c.w[2] * mesh.colours[c.i[2]]).head<3>());
+    base_colour = base_colour.cwiseProduct(c.w[0] * mesh.colours[c.i[0]] + c.w[1] * mesh.colours[c.i[1]] + c.w[2] * mesh.colours[c.i[2]]);
   }
   point.metallic = material.metallic;
   point.roughness = material.roughness;
@@ -138,7 +138,7 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
     const auto& densities = uv_density_[static_cast<std::size_t>(instance.mesh)];
     const float per_metre = densities.empty() ? 0.0f : densities[static_cast<std::size_t>(hit.primitive)];
     if (use.base_colour.sampler) {
-      point.base_colour = point.base_colour.cwiseProduct(sample(use.base_colour, mesh, c, footprint_M, per_metre).head<3>());
+      base_colour = base_colour.cwiseProduct(sample(use.base_colour, mesh, c, footprint_M, per_metre));
     }
     if (use.metallic_roughness.sampler) {
       const Eigen::Vector4f value = sample(use.metallic_roughness, mesh, c, footprint_M, per_metre);
@@ -150,7 +150,7 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
     }
     if (use.normal.sampler) bend(point, use.normal, material.normal_scale, mesh, c, X_WM, footprint_M, per_metre);
   }
-  point.base_colour = point.base_colour.cwiseMax(0.0f).cwiseMin(1.0f);
+  point.base_colour = base_colour.cwiseMax(0.0f).cwiseMin(1.0f).head<3>();
   return point;
 }
 
