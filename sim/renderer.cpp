@@ -219,10 +219,14 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
     Ray ray;
   };
   std::array<Shadow, kTilePixels> shadows;
+  // The last pixel that was shaded on its own, for those of its quad that look alike.
   struct {
-    int x = -1, y = -1, instance = -1;
-    float roughness = 0.0f, depth = 0.0f;
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    int x = -1, y = -1, instance = -1, primitive = -1;
+    SurfacePoint point;
+    Reflection reflection;
+    Eigen::Vector3f v;  // to the viewer, unit
+    float n_dot_v = 0.0f, cosine = 0.0f, depth = 0.0f;
+    std::uint32_t normal = 0;  // of the face, packed
   } quad;
   std::size_t count = 0;
   for (std::size_t i = 0; i < kTilePixels; ++i) {
@@ -246,26 +250,39 @@ void Renderer::State::shade(const Tile& tile, float spread, std::uint32_t seed, 
       continue;
     }
     const Ray& ray = tile.rays[i];
-    const SurfacePoint point = surfaces.at(ray, hit, spread);
-    const Eigen::Vector3f v = -ray.direction.normalized();
-    const float n_dot_v = std::max(point.normal.dot(v), 1e-3f);
-    const Reflection reflection = reflection_of(point, n_dot_v);
+    const bool same_quad = quad.x == x / 2 && quad.y == y / 2 && quad.instance == hit.instance;
+    // Neighbours on one triangle differ in texture alone.
+    const bool same_face = same_quad && quad.primitive == hit.primitive;
+    const SurfacePoint point = same_face ? surfaces.beside(quad.point, ray, hit, spread) : surfaces.at(ray, hit, spread);
+    const Eigen::Vector3f v = same_face ? quad.v : Eigen::Vector3f(-ray.direction.normalized());
+    const float n_dot_v = same_face ? quad.n_dot_v : std::max(point.normal.dot(v), 1e-3f);
+    const Reflection reflection =
+        same_face && point.base_colour == quad.point.base_colour ? quad.reflection : reflection_of(point, n_dot_v);
     // Light hardly changes within a quad of one smooth surface: its pixels share the lamps' irradiance, each with its own texture.
-    const bool shared = quad.x == x / 2 && quad.y == y / 2 && quad.instance == hit.instance && quad.roughness == reflection.roughness &&
-                        quad.normal.dot(point.normal) > 0.9998f && std::abs(quad.depth - hit.distance) < 0.02f * hit.distance;
-    if (!shared) {
-      lights.irradiate(point, reflection, v, parts);
-      quad = {x / 2, y / 2, hit.instance, reflection.roughness, hit.distance, point.normal};
+    const bool shared = same_quad && quad.reflection.roughness == reflection.roughness && quad.point.normal.dot(point.normal) > 0.9998f &&
+                        std::abs(quad.depth - hit.distance) < 0.02f * hit.distance;
+    if (!shared) lights.irradiate(point, reflection, v, parts);
+    if (!shared || !same_face) {
+      quad = {x / 2,
+              y / 2,
+              hit.instance,
+              hit.primitive,
+              point,
+              reflection,
+              v,
+              n_dot_v,
+              std::max(point.face_normal.dot(v), 0.05f),
+              hit.distance,
+              packed_normal(point.face_normal.x(), point.face_normal.y(), point.face_normal.z())};
     }
     direct[p] = parts.reflected_by(reflection);
     ambient[p] = scene.ambient.cwiseProduct(reflection.diffuse + reflection.glossy_albedo);
     glows[p] = point.emissive.isZero(0.0f) ? 0 : 1;
     if (glows[p]) emitted[p] = point.emissive;
 
-    const float cosine = std::max(point.face_normal.dot(v), 0.05f);
     guide.depth[p] = hit.distance;
-    guide.tolerance[p] = hit.distance * (1.5f * spread / cosine + 0.001f);
-    guide.normal[p] = packed_normal(point.face_normal.x(), point.face_normal.y(), point.face_normal.z());
+    guide.tolerance[p] = hit.distance * (1.5f * spread / quad.cosine + 0.001f);
+    guide.normal[p] = quad.normal;
     if (in_half) {
       half_guide.depth[h] = guide.depth[p];
       half_guide.tolerance[h] = 2.0f * guide.tolerance[p];

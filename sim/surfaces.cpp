@@ -97,16 +97,46 @@ Eigen::Vector4f Surfaces::sample(const Use& use, const Mesh& mesh, const Corners
   return use.sampler->sample(use.transform.leftCols<2>() * at + use.transform.col(2), footprint_M * uv_density * use.scale);
 }
 
-SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
+Surfaces::Place Surfaces::place(const Hit& hit) const {
   const Scene& scene = ray_caster_->scene();
   const Instance& instance = scene.instances[static_cast<std::size_t>(hit.instance)];
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-  const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-  const MaterialUse& use = materials_[static_cast<std::size_t>(mesh.material)];
-  const Placement& placement = ray_caster_->placement(hit.instance);
-  const Eigen::Affine3f& X_WM = placement.X_WM;
+  const auto material = static_cast<std::size_t>(mesh.material);
+  return {instance, mesh, scene.materials[material], materials_[material], ray_caster_->placement(hit.instance), corners(mesh, hit)};
+}
+
+Surfaces::Footprint Surfaces::footprint(const Place& at, const Ray& ray, const Hit& hit, const Eigen::Vector3f& face_normal,
+                                        float spread) const {
+  if (!at.use.textured) return {};
+  // A compromise between the long and the short side of the pixel's footprint on a slanted surface.
+  const float length = ray.direction.norm();
+  const float slant = std::max(-face_normal.dot(ray.direction) / length, 0.05f);
+  const auto& densities = uv_density_[static_cast<std::size_t>(at.instance.mesh)];
+  return {hit.distance * length * spread / std::sqrt(slant) / std::max(at.placement.mean_scale, 1e-12f),
+          densities.empty() ? 0.0f : densities[static_cast<std::size_t>(hit.primitive)]};
+}
+
+Eigen::Vector3f Surfaces::base_colour(const Place& at, const Footprint& footprint) {
+  const Corners& c = at.corners;
+  // Four at once: three floats that are written one by one and read two by two wait for the memory.
+  Eigen::Vector4f colour = at.material.base_colour;
+  if (!at.mesh.colours.empty()) {
+    const auto& colours = at.mesh.colours;
+    colour = colour.cwiseProduct(c.w[0] * colours[c.i[0]] + c.w[1] * colours[c.i[1]] + c.w[2] * colours[c.i[2]]);
+  }
+  if (at.use.base_colour.sampler) {
+    colour = colour.cwiseProduct(sample(at.use.base_colour, at.mesh, c, footprint.size_M, footprint.per_metre));
+  }
+  return colour.cwiseMax(0.0f).cwiseMin(1.0f).head<3>();
+}
+
+SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
+  const Place place = this->place(hit);
+  const Mesh& mesh = place.mesh;
+  const MaterialUse& use = place.use;
+  const Eigen::Affine3f& X_WM = place.placement.X_WM;
   const auto linear = X_WM.linear();
-  const Corners c = corners(mesh, hit);
+  const Corners& c = place.corners;
 
   SurfacePoint point;
   point.position = ray.at(hit.distance);
@@ -118,39 +148,36 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
   point.normal = point.face_normal;
   if (!mesh.normals.empty()) {
     const Eigen::Vector3f n_M = c.w[0] * mesh.normals[c.i[0]] + c.w[1] * mesh.normals[c.i[1]] + c.w[2] * mesh.normals[c.i[2]];
-    point.normal = unit(placement.cofactors * n_M, point.face_normal);
+    point.normal = unit(place.placement.cofactors * n_M, point.face_normal);
     if (point.normal.dot(point.face_normal) < 0.0f) point.normal = -point.normal;
   }
 
-  // Four at once: three floats that are written one by one and read two by two wait for the memory.
-  Eigen::Vector4f base_colour = material.base_colour;
-  if (!mesh.colours.empty()) {
-    base_colour = base_colour.cwiseProduct(c.w[0] * mesh.colours[c.i[0]] + c.w[1] * mesh.colours[c.i[1]] + c.w[2] * mesh.colours[c.i[2]]);
+  const Footprint size = footprint(place, ray, hit, point.face_normal, spread);
+  point.base_colour = base_colour(place, size);
+  point.metallic = place.material.metallic;
+  point.roughness = place.material.roughness;
+  point.emissive = place.material.emissive;
+  if (use.metallic_roughness.sampler) {
+    const Eigen::Vector4f value = sample(use.metallic_roughness, mesh, c, size.size_M, size.per_metre);
+    point.roughness *= value.y();
+    point.metallic *= value.z();
   }
-  point.metallic = material.metallic;
-  point.roughness = material.roughness;
-  point.emissive = material.emissive;
-  if (use.textured) {
-    // A compromise between the long and the short side of the pixel's footprint on a slanted surface.
-    const float length = ray.direction.norm();
-    const float slant = std::max(point.face_normal.dot(towards) / length, 0.05f);
-    const float footprint_M = hit.distance * length * spread / std::sqrt(slant) / std::max(placement.mean_scale, 1e-12f);
-    const auto& densities = uv_density_[static_cast<std::size_t>(instance.mesh)];
-    const float per_metre = densities.empty() ? 0.0f : densities[static_cast<std::size_t>(hit.primitive)];
-    if (use.base_colour.sampler) {
-      base_colour = base_colour.cwiseProduct(sample(use.base_colour, mesh, c, footprint_M, per_metre));
-    }
-    if (use.metallic_roughness.sampler) {
-      const Eigen::Vector4f value = sample(use.metallic_roughness, mesh, c, footprint_M, per_metre);
-      point.roughness *= value.y();
-      point.metallic *= value.z();
-    }
-    if (use.emissive.sampler) {
-      point.emissive = point.emissive.cwiseProduct(sample(use.emissive, mesh, c, footprint_M, per_metre).head<3>());
-    }
-    if (use.normal.sampler) bend(point, use.normal, material.normal_scale, mesh, c, X_WM, footprint_M, per_metre);
+  if (use.emissive.sampler) {
+    point.emissive = point.emissive.cwiseProduct(sample(use.emissive, mesh, c, size.size_M, size.per_metre).head<3>());
   }
-  point.base_colour = base_colour.cwiseMax(0.0f).cwiseMin(1.0f).head<3>();
+  if (use.normal.sampler) bend(point, use.normal, place.material.normal_scale, mesh, c, X_WM, size.size_M, size.per_metre);
+  return point;
+}
+
+SurfacePoint Surfaces::beside(const SurfacePoint& near, const Ray& ray, const Hit& hit, float spread) const {
+  const Place place = this->place(hit);
+  const MaterialUse& use = place.use;
+  if (use.metallic_roughness.sampler || use.emissive.sampler || use.normal.sampler) return at(ray, hit, spread);
+  SurfacePoint point = near;
+  point.position = ray.at(hit.distance);
+  if (use.base_colour.sampler || !place.mesh.colours.empty()) {
+    point.base_colour = base_colour(place, footprint(place, ray, hit, near.face_normal, spread));
+  }
   return point;
 }
 

@@ -25,6 +25,8 @@ class Surfaces {
 
   // `spread` is the angle in radians that one sample covers; it picks the texture size. The hit must be valid.
   SurfacePoint at(const Ray& ray, const Hit& hit, float spread) const;
+  // The same for a hit of the same triangle about a pixel from `near`, which at() gave: its normals are taken to be those of `near`.
+  SurfacePoint beside(const SurfacePoint& near, const Ray& ray, const Hit& hit, float spread) const;
   const Material& material(const Hit& hit) const;
   // Interpolated texture coordinates of set 0 or 1, before any texture transform; zero where the mesh has none.
   Eigen::Vector2f uv(const Hit& hit, int set) const;
@@ -46,6 +48,23 @@ class Surfaces {
     std::uint32_t i[3];
     float w[3];
   };
+  // A hit with what belongs to it.
+  struct Place {
+    const Instance& instance;
+    const Mesh& mesh;
+    const Material& material;
+    const MaterialUse& use;
+    const Placement& placement;
+    Corners corners;
+  };
+  // How much of a texture a pixel covers.
+  struct Footprint {
+    float size_M = 0.0f, per_metre = 0.0f;
+  };
+
+  Place place(const Hit& hit) const;
+  Footprint footprint(const Place& at, const Ray& ray, const Hit& hit, const Eigen::Vector3f& face_normal, float spread) const;
+  static Eigen::Vector3f base_colour(const Place& at, const Footprint& footprint);
 
   Use make_use(const TextureUse& use, TextureSampler::Encoding encoding);
   Corners corners(const Mesh& mesh, const Hit& hit) const;
