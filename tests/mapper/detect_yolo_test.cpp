@@ -247,6 +247,14 @@ TEST(YoloDetector, ReadsBothOnnxHeadsEndToEnd) {
     EXPECT_NEAR(found[0].score, 0.81, 1e-5);
     EXPECT_GT(overlap(found[0].box, {25, 12.5, 50, 25}), 0.99);
   }
+  // Placing and class map are configuration: stretched, the same answer is a box of half the width and a quarter of the height.
+  YoloDetector stretched(
+      scratch.path() / "m.onnx",
+      {.confidence = 0.3, .input_width = 16, .input_height = 16, .letterbox = "off", .classes = {"stool"}, .rename = {"chair=stool"}});
+  const std::vector<Detection> seen = stretched.detect(picture);
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].class_name, "stool");
+  EXPECT_GT(overlap(seen[0].box, {25, 18.75, 50, 12.5}), 0.99);
   // Names that fit neither head.
   write_file(scratch.path() / "m.names", "one\ntwo\nthree\nfour\n");
   YoloDetector wrong(scratch.path(), {.input_width = 16, .input_height = 16});
