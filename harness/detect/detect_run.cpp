@@ -14,6 +14,7 @@
 #include "core/staged_folder.h"
 #include "core/statistics.h"
 #include "harness/detect/detection_drawing.h"
+#include "harness/detect/set_scorer.h"
 #include "mapper/detect/yolo_detector.h"
 #include "sensors/recordings/recorded_image.h"
 
@@ -25,63 +26,22 @@ namespace fs = std::filesystem;
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
-std::string joined(const std::vector<std::string>& words) {
-  constexpr std::size_t kMost = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(words.size(), kMost); ++i) text += (i == 0 ? "" : ", ") + words[i];
-  return words.size() > kMost ? text + " .." : text;
-}
-
-// Numbers of the set's classes by name. Throws Error where the model knows none of them.
-std::map<std::string, int> class_numbers(const LabelledSet& set, const std::vector<std::string>& model) {
-  std::map<std::string, int> numbers;
-  for (std::size_t k = 0; k < set.classes.size(); ++k) numbers[set.classes[k]] = static_cast<int>(k);
-  const bool common = std::any_of(model.begin(), model.end(), [&](const std::string& name) { return numbers.count(name) != 0; });
-  if (!set.classes.empty() && !common) {
-    throw Error("the model's classes (" + joined(model) + ") and those of the set (" + joined(set.classes) +
-                ") have none in common; expected --set detect.rename=[from=to]");
-  }
-  return numbers;
-}
-
-// Shares as pixels. A millionth of a pixel is beyond any label; rounding to it gives whole pixels back where the label had them.
-std::vector<TrueBox> truth_of(const LabelledImage& image, const cv::Size& size, const std::vector<bool>& counted) {
-  constexpr double kSteps = 1e6;
-  std::vector<TrueBox> truth;
-  for (const LabelledBox& label : image.boxes) {
-    if (!counted[static_cast<std::size_t>(label.class_index)]) continue;
-    TrueBox box;
-    box.class_index = label.class_index;
-    box.box = {rounded(label.share.x * size.width, kSteps), rounded(label.share.y * size.height, kSteps),
-               rounded(label.share.width * size.width, kSteps), rounded(label.share.height * size.height, kSteps)};
-    box.area = rounded(label.area * size.width * size.height, kSteps);
-    box.ignored = label.ignored;
-    truth.push_back(box);
-  }
-  return truth;
-}
-
-// Of each class of the set no more than COCO counts, since a low threshold lets hundreds pass. `detections` come best first.
-std::vector<ScoredBox> scored_boxes(const std::vector<Detection>& detections, const std::map<std::string, int>& numbers) {
-  std::vector<ScoredBox> boxes;
-  std::map<int, std::size_t> counts;
-  for (const Detection& d : detections) {
-    const auto number = numbers.find(d.class_name);
-    if (number == numbers.end() || ++counts[number->second] > kMostDetections) continue;
-    boxes.push_back({number->second, d.box, static_cast<double>(d.score)});
-  }
-  return boxes;
-}
-
-nlohmann::ordered_json detections_json(const std::vector<Detection>& detections) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+// An entry of detections.json, one line.
+std::string picture_json(const std::string& name, const cv::Size& size, const std::string& drawn,
+                         const std::vector<Detection>& detections) {
+  nlohmann::ordered_json entry;
+  entry["file"] = name;
+  entry["size"] = {size.width, size.height};
+  if (!drawn.empty()) entry["picture"] = "pictures/" + drawn;
+  entry["detections"] = nlohmann::ordered_json::array();
   for (const Detection& d : detections) {
     const double x = rounded(d.box.x, 1e3), y = rounded(d.box.y, 1e3);
-    list.push_back({{"class", d.class_name},
-                    {"box", {x, y, rounded(d.box.width, 1e3), rounded(d.box.height, 1e3)}},
-                    {"score", rounded(d.score, 1e6)}});
+    entry["detections"].push_back({{"class", d.class_name},
+                                   {"box", {x, y, rounded(d.box.width, 1e3), rounded(d.box.height, 1e3)}},
+                                   {"score", rounded(d.score, 1e6)}});
   }
-  return list;
+  // Names of files come in whatever encoding.
+  return entry.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 void write_jpeg(const fs::path& file, const cv::Mat& image) {
@@ -128,18 +88,14 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
   DetectConfig network = config.detect;
   if (labelled) network.confidence = std::min(network.confidence, config.score.ap_confidence);
   YoloDetector detector(model, network);
-  const std::map<std::string, int> numbers = class_numbers(set, detector.class_names());
-  std::vector<bool> counted(set.classes.size(), true);
-  for (std::size_t k = 0; k < counted.size() && !config.detect.classes.empty(); ++k) {
-    counted[k] = std::count(config.detect.classes.begin(), config.detect.classes.end(), set.classes[k]) > 0;
-  }
+  std::optional<SetScorer> scorer;
+  if (labelled) scorer.emplace(set.classes, detector.class_names(), config.detect.classes);
 
   make_folder(out);
   check_place(out, set);
   std::error_code ignored;
   fs::remove(out / "metrics.json", ignored);  // it would speak of other detections
   DetectRunResult result;
-  std::vector<ScoredPicture> scored;
   std::vector<double> times_ms;
   DrawnNames drawn_names;
   int found = 0;
@@ -153,26 +109,22 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
       const auto start = std::chrono::steady_clock::now();
       std::vector<Detection> detections = detector.detect(colour);
       times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-      ScoredPicture picture;
-      picture.truth = truth_of(image, colour.size(), counted);
-      if (labelled) picture.detections = scored_boxes(detections, numbers);
+      std::vector<TrueBox> truth;
+      if (scorer) truth = scorer->truth_of(image, colour.size());
+      if (scorer) scorer->add(truth, detections);
+      // From here on what is shown.
       std::erase_if(detections, [&](const Detection& d) { return static_cast<double>(d.score) < config.detect.confidence; });
-      nlohmann::ordered_json entry;
-      entry["file"] = image.name;
-      entry["size"] = {colour.cols, colour.rows};
+      std::string drawn_name;
       if (drawn) {
-        const std::string name = drawn_names.next(image.file);
-        write_jpeg(drawn->path() / name, draw_detections(colour, detections, picture.truth, set.classes));
-        entry["picture"] = "pictures/" + name;
+        drawn_name = drawn_names.next(image.file);
+        write_jpeg(drawn->path() / drawn_name, draw_detections(colour, detections, truth, set.classes));
       }
-      entry["detections"] = detections_json(detections);
-      file.append((result.pictures == 0 ? "\n" : ",\n") + entry.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+      file.append((result.pictures == 0 ? "\n" : ",\n") + picture_json(image.name, colour.size(), drawn_name, detections));
       for (const Detection& d : detections) {
         ++result.detections[d.class_name];
-        if (labelled && numbers.count(d.class_name) == 0) ++result.other_detections;
+        if (scorer && !scorer->names(d.class_name)) ++result.other_detections;
       }
       found += static_cast<int>(detections.size());
-      if (labelled) scored.push_back(std::move(picture));
       ++result.pictures;
       progress(static_cast<double>(result.pictures) / static_cast<double>(set.images.size()), result.pictures, found);
     }
@@ -184,7 +136,7 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
   else
     fs::remove_all(out / "pictures", ignored);  // check_place knows them to be ours
   result.median_ms = median(times_ms);
-  if (labelled) result.score = score_detections(scored, set.classes, {config.detect.confidence, config.score.match_iou});
+  if (scorer) result.score = scorer->score({config.detect.confidence, config.score.match_iou});
   return result;
 }
 

@@ -46,9 +46,9 @@ struct DetectRunResult {
 using DetectProgress = std::function<void(double done, int pictures, int detections)>;
 
 // Writes detections.json and pictures/ into `out` as it goes and puts them in place at the end; an exception leaves those of an earlier
-// run. `set` without classes is not labelled; of a labelled picture the 100 best detections of a class are scored. With detect.classes, the
-// labels of other classes are left out. One picture at a time is held, and of the rest only numbers. Throws Error where a picture, the
-// model or a setting cannot be used, and where model and set have no class in common.
+// run. `set` without classes is not labelled. With detect.classes, the labels of other classes are left out. One picture at a time is
+// held, and of the rest only numbers. Throws Error where a picture, the model or a setting cannot be used, and where model and set have no
+// class in common.
 DetectRunResult detect_pictures(const std::filesystem::path& model, const LabelledSet& set, const DetectRunConfig& config,
                                 const std::filesystem::path& out, const DetectProgress& progress);
 

@@ -46,9 +46,12 @@ cv::Mat draw_detections(const cv::Mat& colour, const std::vector<Detection>& det
     cv::rectangle(image, detection->box, colour_of_class(detection->class_name), thickness, cv::LINE_AA);
     char text[96];
     std::snprintf(text, sizeof text, "%.60s %.2f", detection->class_name.c_str(), static_cast<double>(detection->score));
-    const int line = static_cast<int>(22.0 * scale);
-    const cv::Point at(static_cast<int>(detection->box.x) + 2, static_cast<int>(detection->box.y) - 4);
-    draw_text(image, {at.x, at.y < line ? at.y + line + 8 : at.y}, text, colour_of_class(detection->class_name), scale);
+    int base = 0;
+    const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, scale, 1, &base);
+    // Above the box, or inside it at the picture's upper edge; never beyond the right one.
+    const int x = std::max(0, std::min(static_cast<int>(detection->box.x) + 2, image.cols - size.width - 2));
+    const int above = static_cast<int>(detection->box.y) - 4;
+    draw_text(image, {x, above < size.height ? above + size.height + 10 : above}, text, colour_of_class(detection->class_name), scale);
   }
   return image;
 }

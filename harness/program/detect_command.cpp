@@ -78,7 +78,7 @@ int detect(DetectOptions options) {
       spdlog::info("{} detections are of classes that the set does not name: in no score", result.other_detections);
     }
   } else {
-    std::cout << result.pictures << " pictures";
+    std::cout << result.pictures << (result.pictures == 1 ? " picture" : " pictures");
     for (const auto& [name, count] : result.detections) std::cout << ", " << name << " " << count;
     std::cout << (result.detections.empty() ? ", nothing found\n" : "\n");
   }

@@ -85,7 +85,8 @@ std::string metrics_json(const DetectionScore& score, const DetectionRunFacts& f
     json["confusions"].push_back({{"truth", name(confusion.truth)}, {"detected", name(confusion.detected)}, {"count", confusion.count}});
   }
   json["median_ms"] = facts.median_ms;
-  return json.dump(2) + "\n";
+  // Names come from people's files, in whatever encoding.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string metrics_table(const DetectionScore& score, const DetectionRunFacts& facts) {

@@ -382,7 +382,7 @@ TEST(ThresholdScore, AgreesWithTheDefinitionsOnRandomBoxes) {
 
 TEST(DetectionScore, MetricsHoldWhatToolsReadAndNoNan) {
   const std::vector<ScoredPicture> pictures = {{{truth_at(0)}, {found_at(0, 0.9), found_at(5, 0.2)}}};
-  const DetectionScore score = score_detections(pictures, {"chair", "table"}, {});
+  const DetectionScore score = score_detections(pictures, {"chair", "table", "caf\xe9"}, {});  // the last in Latin-1
   EXPECT_EQ(score.label_count(), 1);
   const DetectionRunFacts facts{"model", "set", "test", 0.001, 12.5, 3};
   const Json json = Json::parse(metrics_json(score, facts));
