@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core/files.h"
@@ -309,6 +311,47 @@ TEST(PascalScore, ClosedForms) {
   difficult.truth.push_back(truth_at(8));
   difficult.truth.back().ignored = true;
   EXPECT_NEAR(score_pascal({difficult}, 1).all.every_point.value(), 0.5, 1e-12);
+}
+
+TEST(PascalScore, AgreesWithTheDefinitionsOnRandomBoxes) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::vector<ScoredPicture> pictures = random_pictures(seed, 2);
+    const PascalScore score = score_pascal(pictures, 2);
+    for (int k = 0; k < 2; ++k) {
+      struct One {
+        double score;
+        std::size_t picture, truth;  // the true box it overlaps most, by half or more
+        bool near;
+      };
+      std::vector<One> all;
+      Reference r;
+      for (std::size_t p = 0; p < pictures.size(); ++p) {
+        for (const TrueBox& t : pictures[p].truth) r.to_find += t.class_index == k && !t.ignored ? 1 : 0;
+        for (const ScoredBox& d : pictures[p].detections) {
+          if (d.class_index != k) continue;
+          One one{d.score, p, 0, false};
+          double best = 0.0;
+          for (std::size_t g = 0; g < pictures[p].truth.size(); ++g) {
+            const TrueBox& t = pictures[p].truth[g];
+            const double value = t.class_index == k ? reference_overlap(d.box, t) : 0.0;
+            if (value > best) one = {d.score, p, g, value >= 0.5};
+            best = std::max(best, value);
+          }
+          if (!one.near || !pictures[p].truth[one.truth].ignored) all.push_back(one);
+        }
+      }
+      std::stable_sort(all.begin(), all.end(), [](const One& a, const One& b) { return a.score > b.score; });
+      std::set<std::pair<std::size_t, std::size_t>> found;
+      for (const One& one : all) r.ranked.emplace_back(one.score, one.near && found.emplace(one.picture, one.truth).second);
+      ASSERT_GT(r.to_find, 0);
+      double eleven = 0.0, area = 0.0;
+      for (int tenth = 0; tenth <= 10; ++tenth) eleven += precision_from(r, tenth / 10.0) / 11.0;
+      for (int hits = 1; hits <= r.to_find; ++hits) area += precision_from(r, static_cast<double>(hits) / r.to_find) / r.to_find;
+      EXPECT_NEAR(score.classes[static_cast<std::size_t>(k)].eleven_point.value(), eleven, 1e-12);
+      EXPECT_NEAR(score.classes[static_cast<std::size_t>(k)].every_point.value(), area, 1e-12);
+    }
+  }
 }
 
 TEST(ThresholdScore, CountsAndConfusions) {
