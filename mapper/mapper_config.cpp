@@ -31,7 +31,7 @@ void MapperConfig::visit(Fields& f) {
     {.choices = {"auto", "laser", "odometry", "recorded"}});
   f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere",
     {.choices = {"yolo", "boxes", "none"}});
-  f("model", model, "detector: a folder, a .cfg, .weights or .onnx file");
+  f("model", model, "detector: a folder, a .cfg, .weights or .onnx file, or the name of a shipped model");
   f("boxes", boxes, "JSON file with boxes by frame stamp");
   f("objects", objects, "how objects come about: accumulated points, as published, or the evidence of all rays",
     {.choices = {"points", "evidence"}});

@@ -43,7 +43,8 @@ std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const Stre
 
 std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   if (config.detector == "yolo") {
-    if (config.model.empty()) throw Error("mapper.model: no detector model; expected a folder, a .cfg, .weights or .onnx file");
+    if (config.model.empty())
+      throw Error("mapper.model: no detector model; expected a folder, a .cfg, .weights or .onnx file, or a shipped model's name");
     return std::make_unique<YoloDetector>(config.model, config.detect);
   }
   if (config.detector == "boxes") {

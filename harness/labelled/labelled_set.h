@@ -13,6 +13,8 @@ struct LabelledBox {
   cv::Rect2d share;     // left, top, width, height as shares of the picture, so that nobody has to open it: x * width is pixels
   // Not to be found and no mistake if found: COCO's "iscrowd" and "ignore"; ignored/NAME.txt and "left_out" of `waretwin dataset`.
   bool ignored = false;
+  // Of the object's own outline as a share of the picture's area, where the set says it (COCO's "area"); 0: that of the box.
+  double area = 0.0;
 };
 
 struct LabelledImage {
@@ -34,7 +36,17 @@ struct LabelledSet {
 //   split;
 //   - a COCO JSON file, or a folder with annotations/*_SPLIT.json, whose pictures lie beside it, in images/ or one folder up.
 // `split`: train, valid, test, or all. A picture without a text file has no objects. Throws Error naming file, line and key for a
-// dataset that is none of these, a missing split, a class number without a name, and boxes that are no boxes.
+// dataset that is none of these, a missing split, a class number without a name, a missing picture, and boxes that are no boxes. Boxes are
+// cut off at the picture's edges; COCO annotations without width or height (COCO's own set has some) are left out.
 LabelledSet read_labelled_set(const std::filesystem::path& dataset, const std::string& split);
+
+// Whether `dataset` is one of these by the files that are there; nothing but file names is read.
+bool is_labelled_set(const std::filesystem::path& dataset);
+
+// Which of train, valid and test the dataset names, in this order; none where it is one piece ("all"). Throws Error as above.
+std::vector<std::string> splits_of(const std::filesystem::path& dataset);
+
+// Pictures of a folder by their endings, by name.
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
 
 }  // namespace waretwin

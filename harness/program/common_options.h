@@ -44,5 +44,6 @@ Command add_render_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
 Command add_generate_command(CLI::App& program);
 Command add_dataset_command(CLI::App& program);
+Command add_detect_command(CLI::App& program);
 
 }  // namespace waretwin

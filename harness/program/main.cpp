@@ -40,13 +40,14 @@ int run(int argc, char** argv) {
       "  waretwin render scenes/agiprobot/scenario.yaml --out view.png --time 12\n"
       "  waretwin inspect scenes/agiprobot/scenario.yaml\n"
       "  waretwin generate --out halls/7 --seed 7\n"
-      "  waretwin dataset --generate cell --out data/conveyors --count 1000\n\n"
+      "  waretwin dataset --generate cell --out data/conveyors --count 1000\n"
+      "  waretwin detect MODEL photo.jpg --out out/boxes\n\n"
       "`waretwin COMMAND --help` explains a command. Results go to files and stdout, the log to stderr.\n"
       "Exit codes: 0 success, 1 a gate failed, 2 bad input (one line says what), 3 a fault of the program.");
-  const std::vector<waretwin::Command> commands = {waretwin::add_run_command(program),      waretwin::add_map_command(program),
-                                                   waretwin::add_record_command(program),   waretwin::add_score_command(program),
-                                                   waretwin::add_render_command(program),   waretwin::add_inspect_command(program),
-                                                   waretwin::add_generate_command(program), waretwin::add_dataset_command(program)};
+  const std::vector<waretwin::Command> commands = {
+      waretwin::add_run_command(program),      waretwin::add_map_command(program),     waretwin::add_record_command(program),
+      waretwin::add_score_command(program),    waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
+      waretwin::add_generate_command(program), waretwin::add_dataset_command(program), waretwin::add_detect_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
@@ -56,7 +57,7 @@ int run(int argc, char** argv) {
     const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
       return fail(kBadInput, "command '" + std::string(argv[1]) +
-                                 "' is not known; expected run, map, record, score, render, inspect, generate or dataset");
+                                 "' is not known; expected run, map, record, score, render, inspect, generate, dataset or detect");
     }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }

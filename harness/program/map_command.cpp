@@ -85,7 +85,8 @@ Command add_map_command(CLI::App& program) {
   command->add_option("RECORDING", options->recording, "folder of a recording, or a CARMEN log (.log, .log.gz)")->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(
-      *command, "none (default: no objects); a model's folder or file; yolo with --set mapper.model=FILE; a JSON file with boxes");
+      *command,
+      "none (default: no objects); a model's folder, file or shipped name; yolo with --set mapper.model=FILE; a JSON file with boxes");
   command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
       ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
   command->get_option("--config")->excludes("--poses");

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
+#include "mapper/detect/shipped_models.h"
 
 namespace waretwin {
 
@@ -44,11 +45,12 @@ MapperConfig MappingOptions::mapper_config() const {
   } else if (path.extension() == ".json") {
     config.detector = "boxes";
     config.boxes = *detector;
-  } else if (std::filesystem::exists(path)) {
+  } else if (std::filesystem::exists(path) || is_shipped_model(path)) {
     config.detector = "yolo";
     config.model = *detector;
   } else {
-    throw Error("--detector " + *detector + ": no such file; expected yolo, truth, none, a JSON file with boxes, or a model");
+    throw Error("--detector " + *detector +
+                ": no such file; expected yolo, truth, none, a JSON file with boxes, or a model (folder, file or shipped name)");
   }
   return config;
 }

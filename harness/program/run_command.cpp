@@ -108,7 +108,7 @@ Command add_run_command(CLI::App& program) {
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(*command,
                           "truth: true boxes (the default until a model is shipped); none; yolo with --set mapper.model=FILE; a model's "
-                          "folder or file; a JSON file with boxes");
+                          "folder, file or shipped name; a JSON file with boxes");
   command->add_option("--poses", options->poses, "laser (default), odometry or truth")
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));

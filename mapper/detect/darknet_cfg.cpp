@@ -148,4 +148,16 @@ void check_darknet_weights(const std::filesystem::path& weights, const DarknetSu
   }
 }
 
+std::string darknet_cfg_with_all_scores(const std::filesystem::path& cfg) {
+  std::istringstream text(read_file(cfg, 16 << 20));
+  std::string result;
+  for (std::string line; std::getline(text, line);) {
+    const std::string bare = without_spaces(line);
+    if (bare.starts_with("thresh=")) continue;
+    result += line + "\n";
+    if (bare == "[yolo]" || bare == "[region]") result += "thresh=0\n";
+  }
+  return result;
+}
+
 }  // namespace waretwin

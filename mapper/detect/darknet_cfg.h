@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace waretwin {
 
@@ -19,5 +20,9 @@ DarknetSummary read_darknet_cfg(const std::filesystem::path& cfg);
 
 // Throws Error where the weights file's size is not what the network needs (its header is 16 or 20 bytes, by its version).
 void check_darknet_weights(const std::filesystem::path& weights, const DarknetSummary& summary);
+
+// The description as text with thresh=0 in every head: without it OpenCV sets scores up to 0.2 to 0, and which ones count is said by the
+// caller, not by the model.
+std::string darknet_cfg_with_all_scores(const std::filesystem::path& cfg);
 
 }  // namespace waretwin

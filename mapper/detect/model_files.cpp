@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "mapper/detect/shipped_models.h"
 
 namespace waretwin {
 namespace {
@@ -45,7 +46,9 @@ fs::path model_in(const fs::path& folder) {
 
 }  // namespace
 
-ModelFiles find_model_files(const fs::path& model, const fs::path& names) {
+ModelFiles find_model_files(const fs::path& named, const fs::path& names) {
+  // What is there goes before what is shipped.
+  const fs::path model = fs::exists(named) || !may_be_shipped_model(named) ? named : shipped_model(named.string());
   if (!fs::exists(model)) throw Error(model, "no such model; expected a folder, a .cfg or .weights file, or an .onnx file");
   const fs::path file = fs::is_directory(model) ? model_in(model) : model;
   ModelFiles files;

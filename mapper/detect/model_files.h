@@ -15,8 +15,8 @@ struct ModelFiles {
 };
 
 // `model` is a folder that holds one model, a .cfg or .weights file (the other stands beside it under the same stem, or is the only one),
-// or an .onnx file. Class names: `names` if given, else the .names file of the model's stem, else the only .names file beside it. Throws
-// Error naming what is missing or ambiguous.
+// an .onnx file, or the name of a shipped model (shipped_models.h). Class names: `names` if given, else the .names file of the model's
+// stem, else the only .names file beside it. Throws Error naming what is missing or ambiguous.
 ModelFiles find_model_files(const std::filesystem::path& model, const std::filesystem::path& names);
 
 // One name a line; blank lines at the end are left out. Throws Error for an empty file or a blank line between names.

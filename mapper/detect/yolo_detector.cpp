@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "mapper/detect/darknet_cfg.h"
 #include "mapper/detect/model_files.h"
 #include "mapper/detect/yolo_decode.h"
@@ -98,7 +99,8 @@ YoloDetector::YoloDetector(const std::filesystem::path& model, const DetectConfi
                                      std::to_string(summary.classes) + " classes");
       }
       network.input = {summary.width, summary.height};
-      network.net = cv::dnn::readNetFromDarknet(files.cfg.string(), files.weights.string());
+      const std::string cfg = darknet_cfg_with_all_scores(files.cfg), weights = read_file(files.weights);
+      network.net = cv::dnn::readNetFromDarknet(cfg.data(), cfg.size(), weights.data(), weights.size());
     } else {
       network.net = cv::dnn::readNetFromONNX(files.onnx.string());
     }

@@ -14,8 +14,9 @@ namespace waretwin {
 
 class YoloDetector : public Detector {
  public:
-  // `model`: a folder, a .cfg or .weights file, or an .onnx file (see find_model_files). Throws Error, one line, where a file is missing,
-  // damaged or truncated, where names and network disagree in number, or where a class to keep is no name of the model.
+  // `model`: a folder, a .cfg or .weights file, an .onnx file, or a shipped model's name (see find_model_files). Throws Error, one line,
+  // where a file is missing, damaged or truncated, where names and network disagree in number, or where a class to keep is no name of the
+  // model.
   YoloDetector(const std::filesystem::path& model, const DetectConfig& config);
   ~YoloDetector() override;
 

@@ -15,7 +15,7 @@ using test::TemporaryFolder;
 TEST(Program, ExplainsItself) {
   const auto top = test::waretwin("--help");
   EXPECT_EQ(top.exit_code, 0);
-  for (const char* command : {"run", "map", "record", "score", "render", "inspect", "generate"}) {
+  for (const char* command : {"run", "map", "record", "score", "render", "inspect", "generate", "detect"}) {
     EXPECT_NE(top.out.find(command), std::string::npos) << command;
     const auto help = test::waretwin(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;

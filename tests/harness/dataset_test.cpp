@@ -20,6 +20,7 @@
 #include "harness/dataset/image_record.h"
 #include "harness/dataset/things.h"
 #include "harness/dataset/view_sampler.h"
+#include "harness/labelled/labelled_set.h"
 #include "sim/motion/hall_motion.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
@@ -237,6 +238,29 @@ TEST_F(MadeSet, CocoFilesHoldWhatReadersNeed) {
   EXPECT_EQ(images, 14u);
   EXPECT_EQ(static_cast<int>(annotations), summary_.labels.at(0));
   EXPECT_EQ(static_cast<int>(left_out), summary_.hidden + summary_.small);
+}
+
+// The same boxes from both formats, by the reader that training and detection use.
+TEST_F(MadeSet, ReadsBackAlikeFromBothFormats) {
+  for (const std::string split : {"train", "valid", "test"}) {
+    const LabelledSet darknet = read_labelled_set(set(), split);
+    const LabelledSet coco = read_labelled_set(set() / "annotations" / ("instances_" + split + ".json"), "all");
+    EXPECT_EQ(darknet.classes, coco.classes);
+    ASSERT_EQ(darknet.images.size(), coco.images.size());
+    for (std::size_t i = 0; i < coco.images.size(); ++i) {
+      EXPECT_EQ(fs::weakly_canonical(darknet.images[i].file), fs::weakly_canonical(coco.images[i].file));
+      ASSERT_EQ(darknet.images[i].boxes.size(), coco.images[i].boxes.size());
+      for (std::size_t k = 0; k < coco.images[i].boxes.size(); ++k) {
+        const LabelledBox &a = darknet.images[i].boxes[k], &b = coco.images[i].boxes[k];
+        EXPECT_EQ(a.ignored, b.ignored);
+        EXPECT_EQ(a.class_index, b.class_index);
+        EXPECT_NEAR(a.share.x, b.share.x, 1e-6);
+        EXPECT_NEAR(a.share.y, b.share.y, 1e-6);
+        EXPECT_NEAR(a.share.width, b.share.width, 1e-6);
+        EXPECT_NEAR(a.share.height, b.share.height, 1e-6);
+      }
+    }
+  }
 }
 
 TEST_F(MadeSet, ChecksumsAreThoseOfTheFiles) {

@@ -59,6 +59,36 @@ TEST(YoloDetector, FindsDogBicycleAndTruckInTheirPhotograph) {
   }
 }
 
+TEST(YoloDetector, GivesWeakDetectionsWhereTheyAreAskedFor) {
+  WARETWIN_NEED_DATA("yolo_fastest");
+  const fs::path folder = test::shared_data("yolo_fastest");
+  const cv::Mat photograph = cv::imread((folder / "dog.jpg").string());
+  std::vector<Detection> all = YoloDetector(folder, {.confidence = 0.001}).detect(photograph);
+  const auto count_between = [&](float low, float high) {
+    return std::count_if(all.begin(), all.end(), [&](const Detection& d) { return d.score >= low && d.score < high; });
+  };
+  // OpenCV's own limit for YOLO heads, 0.2, is out of the way.
+  EXPECT_GE(count_between(0.05f, 0.2f), 3);
+  EXPECT_GE(count_between(0.001f, 0.01f), 3);
+  // The strong ones are those of a high threshold, to the bit.
+  std::erase_if(all, [](const Detection& d) { return d.score < 0.3f; });
+  const std::vector<Detection> strong = YoloDetector(folder, {.confidence = 0.3}).detect(photograph);
+  ASSERT_EQ(all.size(), strong.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].class_name, strong[i].class_name);
+    EXPECT_EQ(all[i].box, strong[i].box);
+    EXPECT_EQ(all[i].score, strong[i].score);
+  }
+  // What the description says of it does not matter.
+  const test::TemporaryFolder scratch;
+  std::string cfg = read_file(folder / "yolo-fastest-1.1.cfg");
+  for (std::size_t at = cfg.find("[yolo]"); at != std::string::npos; at = cfg.find("[yolo]", at + 1)) cfg.insert(at + 6, "\nthresh = .8");
+  write_file(scratch.path() / "m.cfg", cfg);
+  fs::copy_file(folder / "yolo-fastest-1.1.weights", scratch.path() / "m.weights");
+  fs::copy_file(folder / "coco.names", scratch.path() / "m.names");
+  EXPECT_EQ(YoloDetector(scratch.path(), {.confidence = 0.3}).detect(photograph).size(), strong.size());
+}
+
 TEST(YoloDetector, LetterboxPutsBoxesInTheSamePlaces) {
   WARETWIN_NEED_DATA("yolo_fastest");
   const fs::path folder = test::shared_data("yolo_fastest");
@@ -247,6 +277,14 @@ TEST(YoloDetector, ReadsBothOnnxHeadsEndToEnd) {
     EXPECT_NEAR(found[0].score, 0.81, 1e-5);
     EXPECT_GT(overlap(found[0].box, {25, 12.5, 50, 25}), 0.99);
   }
+  // Placing and class map are configuration: stretched, the same answer is a box of half the width and a quarter of the height.
+  YoloDetector stretched(
+      scratch.path() / "m.onnx",
+      {.confidence = 0.3, .input_width = 16, .input_height = 16, .letterbox = "off", .classes = {"stool"}, .rename = {"chair=stool"}});
+  const std::vector<Detection> seen = stretched.detect(picture);
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].class_name, "stool");
+  EXPECT_GT(overlap(seen[0].box, {25, 18.75, 50, 12.5}), 0.99);
   // Names that fit neither head.
   write_file(scratch.path() / "m.names", "one\ntwo\nthree\nfour\n");
   YoloDetector wrong(scratch.path(), {.input_width = 16, .input_height = 16});
