@@ -100,7 +100,7 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
 fs::path find_picture(const std::vector<fs::path>& folders, const std::string& name, const Place& place) {
   for (const fs::path& folder : folders) {
     std::error_code unreadable;
-    const fs::path picture = (folder / name).lexically_normal();
+    fs::path picture = (folder / name).lexically_normal();
     if (fs::is_regular_file(picture, unreadable)) return picture;
   }
   place.fail("no picture '" + name.substr(0, 120) + "'; expected it beside the file, in images/ or one folder up");

@@ -19,7 +19,7 @@ fs::path shipped_models_folder() {
   }
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / "share/waretwin/models";
+    fs::path installed = program.parent_path().parent_path() / "share/waretwin/models";
     if (fs::is_directory(installed, error)) return installed;
   }
   return WARETWIN_SOURCE_MODELS;

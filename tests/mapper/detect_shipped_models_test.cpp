@@ -11,8 +11,6 @@
 namespace waretwin {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Names a folder of models for one test.
 class ShippedModels : public ::testing::Test {
  protected:
