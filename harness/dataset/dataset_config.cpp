@@ -4,11 +4,6 @@
 
 namespace waretwin {
 
-void LabelRule::visit(Fields& f) {
-  f("min_visible", min_visible, "share of the whole object, parts beyond the picture included, that must be visible", {.min = 0, .max = 1});
-  f("min_side_px", min_side_px, "longer side of the visible box, at least", {.min = 1, .max = 16384});
-}
-
 void ViewConfig::visit(Fields& f) {
   f("route_share", route_share, "of the pictures, taken from the vehicle's mount along the route", {.min = 0, .max = 1});
   f("empty_share", empty_share, "of the pictures, without any object", {.min = 0, .max = 1});

@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "core/fields.h"
+#include "harness/truth/label_rule.h"
 #include "sim/render_options.h"
 
 namespace waretwin {
-
-// Which objects of a picture get a label; what is left out is counted.
-struct LabelRule {
-  double min_visible = 0.3;  // share of the whole object, parts beyond the picture included, that the picture shows
-  int min_side_px = 24;      // longer side of the visible box
-  void visit(Fields& f);
-};
 
 // Where pictures are taken from, as shares of all; the rest looks at objects from anywhere around them.
 struct ViewConfig {
@@ -80,7 +74,7 @@ struct DatasetConfig {
   bool instances = false;  // also instance images, 16-bit PNG
   double polygon_tolerance_px = 1.0;
   std::vector<std::string> classes = {};  // kept, in this order; empty: all that the halls have, by name
-  LabelRule labels;
+  LabelRule labels;                       // which objects get one; what is left out is counted
   ViewConfig views;
   CameraVariation camera;
   LightVariation light;

@@ -17,9 +17,9 @@ ImageLabels label_objects(const std::vector<ObjectView>& views, const cv::Mat& i
     const auto named = std::find(classes.begin(), classes.end(), object->class_name);
     if (named == classes.end()) continue;
     const auto class_index = static_cast<int>(named - classes.begin());
-    const bool small = std::max(view.visible_box.width, view.visible_box.height) < rule.min_side_px;
-    if (small || view.visible() < rule.min_visible) {
-      result.left_out.push_back({view.id, class_index, view.visible_box, small ? LeftOut::Why::kSmall : LeftOut::Why::kHidden});
+    if (!rule.labels(view)) {
+      result.left_out.push_back(
+          {view.id, class_index, view.visible_box, rule.too_small(view) ? LeftOut::Why::kSmall : LeftOut::Why::kHidden});
       continue;
     }
     ImageLabel label;

@@ -46,6 +46,8 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   SurfaceMeter surface(stream.ray_caster());
   SensorPoses sensor_poses(stream, config.scenario.sensors);
   std::vector<ObjectView> views;  // of the frame that was mapped last
+  const bool detects = config.truth_stages.detector || config.mapper.detector != "none";
+  DetectionLog detections(*scene, config.detection_score);
   ClosedLoopResult result;
   MappingHooks hooks;
   hooks.progress = progress;
@@ -56,9 +58,11 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     surface.add_frame(camera, truth.X_WC);
     depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
                       camera.depth_max_m);
-    if (!config.truth_frames.enabled) return;
+    if (!config.truth_frames.enabled && !detects) return;
     WARETWIN_CHECK(truth.stamp == frame.frame.stamp && truth.sensor == frame.frame.sensor, "the mapped frame is the stream's newest");
     views = stream.object_views();
+    if (detects) detections.add(frame.frame, frame.detections, views);
+    if (!config.truth_frames.enabled) return;
     result.truth_frames += truth_frame_line(truth, views, *scene, config.truth_frames.masks);
   };
   hooks.on_event = [&](const SensorEvent& event) { sensor_poses.add(event); };
@@ -85,6 +89,8 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.seed = config.scenario.seed;
   score.digest = digest_of(map);
   score.stages = stage_names(config, stream.info());
+  result.detections = detections.lines();
+  score.detection = detections.score();
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
   if (!map.frames.empty()) score.depth = depth_quality.result();

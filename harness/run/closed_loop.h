@@ -18,6 +18,7 @@ struct ClosedLoopResult {
   MappingResult mapping;
   std::vector<ListedObject> mapped, truth;               // truth with the visible fractions
   std::vector<StampedPose> trajectory, true_trajectory;  // at the same stamps
+  std::string detections;                                // DetectionLog::lines; empty without a detector
   std::string truth_frames;                              // a line a mapped frame (truth_frame_line); empty where that is switched off
   std::map<std::string, std::vector<StampedPose>> sensor_poses;  // as SensorPoses::poses
   RunScore score;

@@ -81,6 +81,28 @@ std::string score_table(const ObjectListScore& score) {
   return text;
 }
 
+std::string detection_table(const DetectionScore& score) {
+  std::string text = "<table>\n" + row({"class", "labels", "precision", "recall", "AP<sub>50</sub>", "found", "wrong", "missed"}, "th");
+  const auto line = [&](const std::string& name, int labels, const ThresholdFigures& t, const std::optional<double>& ap50) {
+    text += row({name, std::to_string(labels), number("%.3f", t.precision()), number("%.3f", t.recall()), number("%.3f", ap50),
+                 std::to_string(t.right), std::to_string(t.wrong), std::to_string(t.missed)});
+  };
+  for (std::size_t k = 0; k < score.classes.size(); ++k) {
+    line(escaped(score.classes[k]), score.labels[k], score.at_threshold.classes[k], score.coco.classes[k].ap50);
+  }
+  line("<b>all</b>", score.label_count(), score.at_threshold.all, score.coco.all.ap50);
+  text += "</table>\n";
+  const auto name = [&](const std::optional<int>& k) { return k ? escaped(score.classes[static_cast<std::size_t>(*k)]) : "background"; };
+  const std::vector<Confusion>& confusions = score.at_threshold.confusions;
+  if (confusions.empty()) return text;
+  text += "<ul>\n";
+  for (const Confusion& c : confusions) {
+    text += "<li>" + name(c.truth) + (c.detected ? " taken for " + name(c.detected) : std::string(" missed")) + ", " +
+            std::to_string(c.count) + " times</li>\n";
+  }
+  return text + "</ul>\n";
+}
+
 std::string object_table(const std::vector<ListedObject>& objects) {
   std::string text = "<table>\n" + row({"map id", "class", "centre (m)", "size (m)", "yaw (deg)", "score"}, "th");
   for (const ListedObject& object : objects) {
@@ -136,6 +158,9 @@ std::string report_html(const ReportPage& page) {
     }
   }
   html += "<h2>Mapped objects</h2>\n" + object_table(page.mapped);
+  if (page.score != nullptr && page.score->detection) {
+    html += "<h2>Detections in the mapped frames</h2>\n" + detection_table(*page.score->detection);
+  }
   html += "<h2>Time per mapped frame</h2>\n" + timing_table(page.timing_ms);
   html += "<h2>Pictures</h2>\n";
   for (const ReportPicture& picture : page.pictures) html += figure(picture);

@@ -25,6 +25,7 @@ void RunConfig::visit(Fields& f) {
   f.group("truth_stages", truth_stages, "stages that the truth stands in for");
   f.group("truth_detector", truth_detector, "which objects get a true box");
   f.group("truth_frames", truth_frames, "the truth of mapped frames");
+  f.group("detection_score", detection_score, "how detections are compared with what the mapped frames show");
   f.group("score", score, "how map and truth are compared");
   f.group("output", output, "files that are written where they can be");
   f("resume", resume, "the map.waretwin to go on from; empty: a new map");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "harness/run/detection_log.h"
 #include "harness/score/object_score.h"
 #include "harness/truth/truth_detector.h"
 #include "harness/truth/truth_frames.h"
@@ -31,6 +32,7 @@ struct RunConfig {
   TruthStages truth_stages;
   TruthDetectorConfig truth_detector;
   TruthFramesConfig truth_frames;
+  DetectionLogConfig detection_score;
   ScoringRules score;
   OutputConfig output;
   std::string resume;  // the map.waretwin to go on from; empty: a new map

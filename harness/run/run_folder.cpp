@@ -209,7 +209,8 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const 
   page.pictures = write_map(folder, result.mapping, std::move(scene), output);
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
-  for (const char* earlier : {"truth_frames.jsonl", "budget.md"}) folder.remove(earlier);
+  for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md"}) folder.remove(earlier);
+  if (!result.detections.empty()) folder.write("detections.jsonl", result.detections);
   if (!result.truth_frames.empty()) folder.write("truth_frames.jsonl", result.truth_frames);
   for (const char* part : {"truth_poses", "truth_poses/cameras", "truth_poses/lasers"}) folder.clear(part);
   for (const auto& [name, poses] : result.sensor_poses) folder.write("truth_poses/" + name, tum_text(poses));
@@ -239,6 +240,7 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const 
   }
   page.files = map_files(output);
   for (const char* name : {"truth.json", "trajectory_truth.tum", "table6.md", "score.json"}) page.files.emplace_back(name);
+  if (!result.detections.empty()) page.files.emplace_back("detections.jsonl");
   if (!result.truth_frames.empty()) page.files.emplace_back("truth_frames.jsonl");
   for (const auto& entry : result.sensor_poses) page.files.push_back("truth_poses/" + entry.first);
   folder.write("report.html", report_html(page));

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/version.h"
-#include "harness/score/detection_score.h"
+#include "harness/score/detection_json.h"
 #include "harness/score/number_text.h"
 
 namespace waretwin {
@@ -41,22 +41,9 @@ std::string class_or(const DetectionScore& score, const std::optional<int>& inde
 
 }  // namespace
 
-std::string metrics_json(const DetectionScore& score, const DetectionRunFacts& facts) {
+void add_figures(Json& json, const DetectionScore& score) {
   const CocoFigures& coco = score.coco.all;
   const ThresholdFigures& t = score.at_threshold.all;
-  Json json;
-  json["schema"] = 1;
-  json["version"] = kVersion;
-  json["model"] = facts.model;
-  json["dataset"] = facts.dataset;
-  json["split"] = facts.split;
-  json["images"] = score.images;
-  json["labels"] = score.label_count();
-  json["ignored_labels"] = score.ignored_labels;
-  json["other_detections"] = facts.other_detections;
-  json["confidence"] = score.rules.confidence;
-  json["match_iou"] = score.rules.match_iou;
-  json["ap_confidence"] = facts.collect_confidence;
   json["ap50"] = or_null(coco.ap50);
   json["ap"] = or_null(coco.ap);
   json["precision"] = or_null(t.precision());
@@ -84,6 +71,23 @@ std::string metrics_json(const DetectionScore& score, const DetectionRunFacts& f
     const auto name = [&](const std::optional<int>& k) { return k ? Json(score.classes[static_cast<std::size_t>(*k)]) : Json(nullptr); };
     json["confusions"].push_back({{"truth", name(confusion.truth)}, {"detected", name(confusion.detected)}, {"count", confusion.count}});
   }
+}
+
+std::string metrics_json(const DetectionScore& score, const DetectionRunFacts& facts) {
+  Json json;
+  json["schema"] = 1;
+  json["version"] = kVersion;
+  json["model"] = facts.model;
+  json["dataset"] = facts.dataset;
+  json["split"] = facts.split;
+  json["images"] = score.images;
+  json["labels"] = score.label_count();
+  json["ignored_labels"] = score.ignored_labels;
+  json["other_detections"] = facts.other_detections;
+  json["confidence"] = score.rules.confidence;
+  json["match_iou"] = score.rules.match_iou;
+  json["ap_confidence"] = facts.collect_confidence;
+  add_figures(json, score);
   json["median_ms"] = facts.median_ms;
   // Names come from people's files, in whatever encoding.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

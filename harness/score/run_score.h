@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/score/depth_quality.h"
+#include "harness/score/detection_score.h"
 #include "harness/score/explain.h"
 #include "harness/score/object_score.h"
 #include "harness/score/surface_score.h"
@@ -40,6 +41,7 @@ struct RunScore {
   std::map<std::string, std::string> stages;  // who made what: detector, poses, depth, association
   ComparedLists objects;
   std::optional<TrajectoryScore> trajectory, trajectory_aligned;
+  std::optional<DetectionScore> detection;         // the detector in the mapped frames
   std::optional<DepthQuality> depth;               // of the mapped frames
   std::optional<SurfaceScore> surface;             // the mesh against the hall
   std::optional<MotionReport> motion;              // what moved in the hall and what the vehicle touched

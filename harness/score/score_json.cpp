@@ -6,6 +6,7 @@
 #include "core/cpu_features.h"
 #include "core/pose.h"
 #include "core/version.h"
+#include "harness/score/detection_json.h"
 
 namespace waretwin {
 
@@ -111,6 +112,14 @@ std::string score_json(const RunScore& score) {
   json["cpu"] = {{"model", cpu_model()}, {"features", cpu_features()}};
   json["stages"] = score.stages;
   add_objects(json, score.objects);
+  json["detection"] = nullptr;
+  if (score.detection) {
+    json["detection"] = {{"frames", score.detection->images},
+                         {"labels", score.detection->label_count()},
+                         {"ignored_labels", score.detection->ignored_labels},
+                         {"match_iou", score.detection->rules.match_iou}};
+    add_figures(json["detection"], *score.detection);
+  }
   json["depth"] = nullptr;
   if (score.depth) {
     json["depth"]["valid_share"] = score.depth->valid_share;
