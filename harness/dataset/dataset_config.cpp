@@ -1,5 +1,7 @@
 #include "harness/dataset/dataset_config.h"
 
+#include <algorithm>
+
 #include "sim/ray_caster.h"
 
 namespace waretwin {
@@ -53,10 +55,16 @@ void ThingsVariation::visit(Fields& f) {
   f("standing_max", standing_max, "things put up beside the hall's own, at most", {.min = 0, .max = 500});
 }
 
+int DatasetConfig::hall_size() const {
+  constexpr int kHalls = 40, kMost = 25;
+  return images_per_hall > 0 ? images_per_hall : std::clamp(count / kHalls, 1, kMost);
+}
+
 void DatasetConfig::visit(Fields& f) {
   f("seed", seed, "of everything that is drawn");
   f("count", count, "pictures", {.min = 1, .max = 10000000});
-  f("images_per_hall", images_per_hall, "with one hall, light, materials and things", {.min = 1, .max = 100000});
+  f("images_per_hall", images_per_hall, "with one hall, light, materials and things; 0: as many as make forty halls, at most 25",
+    {.min = 0, .max = 100000});
   f("valid_share", valid_share, "of the halls, for validation", {.min = 0, .max = 1});
   f("test_share", test_share, "of the halls, for testing", {.min = 0, .max = 1});
   if (valid_share + test_share > 1.0) f.reject("test_share", "valid_share and test_share add up to more than 1");

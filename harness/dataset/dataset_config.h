@@ -67,7 +67,7 @@ struct ThingsVariation {
 struct DatasetConfig {
   std::uint64_t seed = 1;
   int count = 100;                             // pictures
-  int images_per_hall = 25;                    // with one hall, one light, one set of materials and things
+  int images_per_hall = 0;                     // with one hall, light, set of materials and things; 0: see hall_size()
   double valid_share = 0.1, test_share = 0.1;  // of the halls
   int jpeg_quality = 92;
   bool depth = false;      // also true depth, 16-bit PNG in millimetres
@@ -83,6 +83,9 @@ struct DatasetConfig {
   RenderOptions render;
   std::string isa = "avx2";
 
+  // Pictures of one hall. Unless it is set, as many as make forty halls, at most 25: small sets live on variety, and in large ones a new
+  // hall must not cost more than its pictures.
+  int hall_size() const;
   void visit(Fields& f);
 };
 

@@ -141,10 +141,10 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   if (config.depth) make_folder(folder / "depth");
   if (config.instances) make_folder(folder / "instances");
 
-  const int halls = (config.count + config.images_per_hall - 1) / config.images_per_hall;
+  const int size = config.hall_size(), halls = (config.count + size - 1) / size;
   const std::vector<std::string> splits = split_halls(halls, config.valid_share, config.test_share);
-  const auto first_image = [&](int number) { return number * config.images_per_hall; };
-  const auto images_of = [&](int number) { return std::min(config.images_per_hall, config.count - first_image(number)); };
+  const auto first_image = [&](int number) { return number * size; };
+  const auto images_of = [&](int number) { return std::min(size, config.count - first_image(number)); };
   DatasetProgress progress;
   std::deque<int> to_do;
   for (int number = shard.index; number < halls; number += shard.count) {

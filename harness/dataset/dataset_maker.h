@@ -1,6 +1,6 @@
 // A set of labelled training pictures on disk.
 //
-// A set is made hall by hall. Hall number h holds pictures h * images_per_hall and on; each of its files depends on the configuration, the
+// A set is made hall by hall. Hall number h holds pictures h * hall_size() and on; each of its files depends on the configuration, the
 // sources and h alone. So any split over processes (shards), any number of threads, and any number of kills and restarts give the same
 // bytes: what a hall leaves is written under final names only when complete, its record (image_record.h) last, and halls whose record is
 // there are passed over. Once all records are there, lists and annotations are made from them (dataset_index.h).
