@@ -42,6 +42,15 @@ std::vector<std::string> classes_of(const DatasetConfig& config, const std::vect
   return config.classes;
 }
 
+void expect_camera(const std::string& name, const std::vector<std::unique_ptr<HallSource>>& sources) {
+  for (const auto& source : sources) {
+    const std::vector<std::string> known = source->cameras();
+    if (name.empty() || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error("dataset.camera.name '" + name + "': " + source->description() +
+                " has no such camera; expected one of its sensors.cameras");
+  }
+}
+
 // What makes two sets the same, as text: dataset.yaml.
 std::string description(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources,
                         const DatasetFormats& formats) {
@@ -132,6 +141,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
                             const DatasetFormats& formats, const Shard& shard, const std::function<void(const DatasetProgress&)>& step) {
   WARETWIN_CHECK(!sources.empty() && shard.count > 0 && shard.index >= 0 && shard.index < shard.count, "halls and a shard of them");
   const std::vector<std::string> classes = classes_of(config, sources);
+  expect_camera(config.camera.name, sources);
   const std::string text = description(config, sources, formats);
   claim(folder, text);
   make_folder(folder / "halls");

@@ -40,7 +40,8 @@ struct DatasetSummary {
 
 // Makes this shard's part of the set in `folder`, and the lists of the whole set where it was the last part. `step` is called after each
 // picture; what it throws ends the work, and a later call goes on. Throws Error where `folder` holds anything but a set of the very same
-// configuration, and for sources without objects of the classes asked for.
+// configuration, and for sources without objects of the classes, or without the
+// camera, asked for.
 DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources,
                             const std::filesystem::path& folder, const DatasetFormats& formats, const Shard& shard,
                             const std::function<void(const DatasetProgress&)>& step = {});

@@ -44,9 +44,7 @@ Hall varied(const Hall& hall, const DatasetConfig& config, int number) {
 CameraConfig varied_camera(const Hall& hall, const CameraVariation& config, Dice& dice) {
   const auto& cameras = hall.scenario.sensors.cameras;
   const auto found = config.name.empty() ? cameras.begin() : cameras.find(config.name);
-  if (found == cameras.end()) {
-    throw Error("dataset.camera.name " + config.name + ": " + hall.name + " has no such camera; expected one of sensors.cameras");
-  }
+  WARETWIN_CHECK(found != cameras.end(), "whoever makes a set has asked its halls for the camera");
   CameraConfig camera = found->second;
   const double field = 1.0 + dice.between(-config.field_share, config.field_share);
   camera.horizontal_fov_deg *= field;

@@ -21,8 +21,8 @@ struct Photograph {
 
 class HallPhotographer {
  public:
-  // Varies the hall's light, materials, things and camera by the configuration's seed and `number`. Throws Error for a camera that the
-  // scenario lacks.
+  // Varies the hall's light, materials, things and camera by the configuration's seed and `number`. The hall has the configuration's
+  // camera.
   HallPhotographer(const Hall& hall, const DatasetConfig& config, const std::vector<std::string>& classes, int number);
   ~HallPhotographer();
   HallPhotographer(const HallPhotographer&) = delete;

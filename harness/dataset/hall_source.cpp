@@ -37,6 +37,11 @@ class ScenarioSource final : public HallSource {
     for (const TrueObject& object : hall_.scene->objects) names.insert(object.class_name);
     return {names.begin(), names.end()};
   }
+  std::vector<std::string> cameras() const override {
+    std::vector<std::string> names;
+    for (const auto& entry : hall_.scenario.sensors.cameras) names.push_back(entry.first);
+    return names;
+  }
   std::string description() const override { return description_; }
 
  private:
@@ -94,6 +99,8 @@ class GeneratedSource final : public HallSource {
   }
   // What the parts of scenes/builder name their conveyors.
   std::vector<std::string> classes() const override { return {"conveyor"}; }
+  // What generate::scenario_text gives every hall.
+  std::vector<std::string> cameras() const override { return {"camera"}; }
   std::string description() const override {
     std::string text = "generate " + style_;
     for (const Setting& setting : settings_) text += " " + setting.key + "=" + setting.value;

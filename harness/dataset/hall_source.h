@@ -27,6 +27,8 @@ class HallSource {
   virtual Hall hall(std::uint64_t number) const = 0;
   // Of the objects in it.
   virtual std::vector<std::string> classes() const = 0;
+  // Names of those that could take the pictures.
+  virtual std::vector<std::string> cameras() const = 0;
   // What it is, equal exactly where its halls are, without names of folders.
   virtual std::string description() const = 0;
 };
