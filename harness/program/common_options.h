@@ -43,5 +43,6 @@ Command add_score_command(CLI::App& program);
 Command add_render_command(CLI::App& program);
 Command add_inspect_command(CLI::App& program);
 Command add_generate_command(CLI::App& program);
+Command add_train_command(CLI::App& program);
 
 }  // namespace waretwin

@@ -39,13 +39,14 @@ int run(int argc, char** argv) {
       "  waretwin score out/agiprobot --truth out/agiprobot/truth.json\n"
       "  waretwin render scenes/agiprobot/scenario.yaml --out view.png --time 12\n"
       "  waretwin inspect scenes/agiprobot/scenario.yaml\n"
-      "  waretwin generate --out halls/7 --seed 7\n\n"
+      "  waretwin generate --out halls/7 --seed 7\n"
+      "  waretwin train DATASET --out out/detector\n\n"
       "`waretwin COMMAND --help` explains a command. Results go to files and stdout, the log to stderr.\n"
       "Exit codes: 0 success, 1 a gate failed, 2 bad input (one line says what), 3 a fault of the program.");
-  const std::vector<waretwin::Command> commands = {waretwin::add_run_command(program),     waretwin::add_map_command(program),
-                                                   waretwin::add_record_command(program),  waretwin::add_score_command(program),
-                                                   waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
-                                                   waretwin::add_generate_command(program)};
+  const std::vector<waretwin::Command> commands = {waretwin::add_run_command(program),      waretwin::add_map_command(program),
+                                                   waretwin::add_record_command(program),   waretwin::add_score_command(program),
+                                                   waretwin::add_render_command(program),   waretwin::add_inspect_command(program),
+                                                   waretwin::add_generate_command(program), waretwin::add_train_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
@@ -54,8 +55,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
-      return fail(kBadInput,
-                  "command '" + std::string(argv[1]) + "' is not known; expected run, map, record, score, render, inspect or generate");
+      return fail(kBadInput, "command '" + std::string(argv[1]) +
+                                 "' is not known; expected run, map, record, score, render, inspect, generate or train");
     }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }
