@@ -34,8 +34,8 @@ Network::Network(const NetworkPlan& plan, std::uint64_t seed) : plan_(plan), lay
       parameters.mean = at::zeros({layer.channels});
       parameters.variance = at::ones({layer.channels});
     } else {
-      // Nearly every cell is empty: starting from a chance of 2 % spares the first steps.
-      parameters.bias.view({static_cast<std::int64_t>(plan.anchors.size()), plan.numbers()}).select(1, 4).fill_(-4.0);
+      // Nearly every cell is empty: starting from a chance of 0.25 % spares the first steps.
+      parameters.bias.view({static_cast<std::int64_t>(plan.anchors.size()), plan.numbers()}).select(1, 4).fill_(-6.0);
     }
   }
   for (const at::Tensor& tensor : learned()) tensor.set_requires_grad(true);

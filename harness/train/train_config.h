@@ -24,7 +24,7 @@ struct AugmentConfig {
 };
 
 struct TrainConfig {
-  int width = 512, height = 288;  // of the network's input
+  int width = 448, height = 256;  // of the network's input
   int anchors = 5;
   int epochs = 0;        // 0: about 27,000 pictures in all
   double minutes = 0.0;  // 0: no limit
@@ -32,7 +32,7 @@ struct TrainConfig {
   int patience = 20;  // epochs
   std::uint64_t seed = 1;
   int batch = 8;
-  double learning_rate = 0.002, final_rate = 0.02;
+  double learning_rate = 0.003, final_rate = 0.02;
   int warm_up = 200;  // steps
   double weight_decay = 0.02;
   double average_decay = 0.998;
