@@ -45,5 +45,6 @@ Command add_inspect_command(CLI::App& program);
 Command add_generate_command(CLI::App& program);
 Command add_dataset_command(CLI::App& program);
 Command add_detect_command(CLI::App& program);
+Command add_train_command(CLI::App& program);
 
 }  // namespace waretwin

@@ -41,13 +41,15 @@ int run(int argc, char** argv) {
       "  waretwin inspect scenes/agiprobot/scenario.yaml\n"
       "  waretwin generate --out halls/7 --seed 7\n"
       "  waretwin dataset --generate cell --out data/conveyors --count 1000\n"
-      "  waretwin detect MODEL photo.jpg --out out/boxes\n\n"
+      "  waretwin train data/conveyors --out out/detector\n"
+      "  waretwin detect out/detector photo.jpg --out out/boxes\n\n"
       "`waretwin COMMAND --help` explains a command. Results go to files and stdout, the log to stderr.\n"
       "Exit codes: 0 success, 1 a gate failed, 2 bad input (one line says what), 3 a fault of the program.");
-  const std::vector<waretwin::Command> commands = {
-      waretwin::add_run_command(program),      waretwin::add_map_command(program),     waretwin::add_record_command(program),
-      waretwin::add_score_command(program),    waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
-      waretwin::add_generate_command(program), waretwin::add_dataset_command(program), waretwin::add_detect_command(program)};
+  const std::vector<waretwin::Command> commands = {waretwin::add_run_command(program),      waretwin::add_map_command(program),
+                                                   waretwin::add_record_command(program),   waretwin::add_score_command(program),
+                                                   waretwin::add_render_command(program),   waretwin::add_inspect_command(program),
+                                                   waretwin::add_generate_command(program), waretwin::add_dataset_command(program),
+                                                   waretwin::add_train_command(program),    waretwin::add_detect_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
@@ -57,7 +59,7 @@ int run(int argc, char** argv) {
     const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
       return fail(kBadInput, "command '" + std::string(argv[1]) +
-                                 "' is not known; expected run, map, record, score, render, inspect, generate, dataset or detect");
+                                 "' is not known; expected run, map, record, score, render, inspect, generate, dataset, train or detect");
     }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }

@@ -15,6 +15,7 @@ class Progress {
 
   // fraction in [0, 1]; a line every 10 % where stderr is no terminal.
   void update(double fraction, const std::string& detail);
+  bool on_terminal() const { return terminal_; }
 
  private:
   std::string what_;

@@ -1,0 +1,93 @@
+#include "harness/train/average_precision.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waretwin::train {
+namespace {
+
+struct Judged {
+  float score = 0.0f;
+  bool correct = false;
+};
+
+// The free object that the box overlaps most, if by `iou`; nothing otherwise.
+const TruthBox* best_free(const ScoredBox& box, const std::vector<TruthBox>& truth, const std::vector<bool>& taken, float iou) {
+  const TruthBox* best = nullptr;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (taken[i] || truth[i].ignored || truth[i].class_index != box.class_index) continue;
+    const float overlap = box_iou(box.share, truth[i].share);
+    if (overlap >= iou) {
+      iou = overlap;
+      best = &truth[i];
+    }
+  }
+  return best;
+}
+
+double area_under(std::vector<Judged>& judged, double objects) {
+  std::stable_sort(judged.begin(), judged.end(), [](const Judged& a, const Judged& b) { return a.score > b.score; });
+  std::vector<double> precision, recall;
+  double correct = 0.0;
+  for (const Judged& one : judged) {
+    correct += one.correct ? 1.0 : 0.0;
+    precision.push_back(correct / static_cast<double>(precision.size() + 1));
+    recall.push_back(correct / objects);
+  }
+  double area = 0.0, best = 0.0;
+  for (std::size_t i = judged.size(); i-- > 0;) {
+    best = std::max(best, precision[i]);
+    area += best * (recall[i] - (i > 0 ? recall[i - 1] : 0.0));
+  }
+  return area;
+}
+
+}  // namespace
+
+double average_precision(const std::vector<std::vector<ScoredBox>>& found, const std::vector<std::vector<TruthBox>>& truth, int classes,
+                         float iou) {
+  double sum = 0.0;
+  int counted = 0;
+  for (int c = 0; c < classes; ++c) {
+    double objects = 0.0;
+    std::vector<Judged> judged;
+    for (std::size_t n = 0; n < truth.size(); ++n) {
+      for (const TruthBox& box : truth[n]) objects += !box.ignored && box.class_index == c ? 1.0 : 0.0;
+      std::vector<bool> taken(truth[n].size());
+      for (const ScoredBox& box : found[n]) {
+        if (box.class_index != c) continue;
+        const TruthBox* const object = best_free(box, truth[n], taken, iou);
+        const bool excused = object == nullptr && std::any_of(truth[n].begin(), truth[n].end(), [&](const TruthBox& other) {
+                               return other.ignored && box_iou(box.share, other.share) >= iou;
+                             });
+        if (object != nullptr) taken[static_cast<std::size_t>(object - truth[n].data())] = true;
+        if (!excused) judged.push_back({box.score, object != nullptr});
+      }
+    }
+    if (objects == 0.0) continue;
+    sum += area_under(judged, objects);
+    ++counted;
+  }
+  return counted > 0 ? sum / counted : 0.0;
+}
+
+double median_side_error(const std::vector<std::vector<ScoredBox>>& found, const std::vector<std::vector<TruthBox>>& truth, double width,
+                         double height) {
+  std::vector<double> errors;
+  for (std::size_t n = 0; n < truth.size(); ++n) {
+    std::vector<bool> taken(truth[n].size());
+    for (const ScoredBox& box : found[n]) {
+      const TruthBox* const object = best_free(box, truth[n], taken, 0.5f);
+      if (object == nullptr) continue;
+      taken[static_cast<std::size_t>(object - truth[n].data())] = true;
+      const cv::Point2f a = box.share.tl() - object->share.tl(), b = box.share.br() - object->share.br();
+      errors.push_back(0.25 * (width * (std::abs(a.x) + std::abs(b.x)) + height * (std::abs(a.y) + std::abs(b.y))));
+    }
+  }
+  if (errors.empty()) return 0.0;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  return *middle;
+}
+
+}  // namespace waretwin::train

@@ -1,0 +1,45 @@
+// The detector as libtorch computes it.
+#pragma once
+
+#include <ATen/ATen.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/train/network_plan.h"
+
+namespace waretwin::train {
+
+class Network {
+ public:
+  // Weights drawn as He et al. (2015) say, from the seed alone.
+  Network(const NetworkPlan& plan, std::uint64_t seed);
+
+  // (N, 3, height, width), RGB from 0 to 1, to (N, anchors * (5 + classes), rows, columns). In training, batch normalisation takes the
+  // batch's own statistics and follows them.
+  at::Tensor forward(const at::Tensor& pictures, bool training);
+
+  const NetworkPlan& plan() const { return plan_; }
+
+  struct Parameters {                  // of a convolution; those that its kind does not have are undefined
+    at::Tensor weight;                 // (out, in, size, size)
+    at::Tensor bias;                   // of the last layer, or batch normalisation's shift
+    at::Tensor scale, mean, variance;  // batch normalisation
+  };
+  const std::vector<Parameters>& layers() const { return layers_; }  // one a layer of the plan
+
+  std::vector<at::Tensor> learned() const;   // what gradients change: by layer weight, bias, scale
+  std::vector<at::Tensor> followed() const;  // means and variances
+
+  static constexpr double kEpsilon = 1e-5;  // beside the variance
+  static constexpr double kSlope = 0.1;     // below zero
+
+ private:
+  NetworkPlan plan_;
+  std::vector<Parameters> layers_;
+};
+
+// target = decay * target + (1 - decay) * source, for everything that the network holds.
+void follow_average(Network& target, const Network& source, double decay);
+
+}  // namespace waretwin::train

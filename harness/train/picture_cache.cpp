@@ -1,0 +1,40 @@
+#include "harness/train/picture_cache.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.h"
+
+namespace waretwin::train {
+
+PictureCache::PictureCache(const LabelledSet& set, const cv::Size& size, std::int64_t bytes) : size_(size), free_bytes_(bytes) {
+  for (const LabelledImage& image : set.images) {
+    files_.push_back(image.file);
+    std::vector<TruthBox>& boxes = boxes_.emplace_back();
+    for (const LabelledBox& box : image.boxes) boxes.push_back({box.class_index, cv::Rect2f(box.share), box.ignored});
+  }
+  kept_.resize(files_.size());
+}
+
+Sample PictureCache::get(std::size_t index) {
+  if (!kept_[index].empty()) return {kept_[index], boxes_[index]};
+  cv::Mat picture;
+  try {
+    picture = cv::imread(files_[index].string(), cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    picture.release();
+  }
+  if (picture.empty()) throw Error(files_[index], "no picture that can be read; expected a JPEG or PNG file");
+  // As the detector does it.
+  cv::Mat small;
+  cv::resize(picture, small, size_, 0, 0, cv::INTER_LINEAR);
+  cv::cvtColor(small, small, cv::COLOR_BGR2RGB);
+  const auto bytes = static_cast<std::int64_t>(small.total() * small.elemSize());
+  if (bytes <= free_bytes_) {
+    free_bytes_ -= bytes;
+    kept_[index] = small;
+  }
+  return {small, boxes_[index]};
+}
+
+}  // namespace waretwin::train

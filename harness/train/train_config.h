@@ -1,0 +1,48 @@
+// Settings of a training: network, loss, learning, augmentation.
+#pragma once
+
+#include <cstdint>
+
+#include "core/fields.h"
+
+namespace waretwin::train {
+
+struct AugmentConfig {
+  double flip = 0.5;  // chance
+  double zoom_least = 0.6, zoom_most = 1.7;
+  double aspect = 0.2;        // width against height changes by up to this share
+  double mosaic = 0.3;        // chance
+  double plain_share = 0.15;  // of the training, at its end, without mosaics
+  double hue_deg = 12.0;
+  double saturation = 0.5, exposure = 0.5;
+  double blur = 0.15, noise = 0.3;  // chances
+  double noise_sigma = 8.0;         // of 255
+  double cut_out = 0.3;             // chance
+  double kept_share = 0.3;          // of a box's area
+
+  void visit(Fields& f);
+};
+
+struct TrainConfig {
+  int width = 448, height = 256;  // of the network's input
+  int anchors = 5;
+  int epochs = 0;        // 0: about 27,000 pictures in all
+  double minutes = 0.0;  // 0: no limit
+  int epoch_pictures = 800;
+  int patience = 20;  // epochs
+  std::uint64_t seed = 1;
+  int batch = 8;
+  double learning_rate = 0.003, final_rate = 0.02;
+  int warm_up = 200;  // steps
+  double weight_decay = 0.02;
+  double average_decay = 0.998;
+  double largest_gradient = 10.0;
+  double box_weight = 5.0, object_weight = 1.0, class_weight = 1.0;
+  double anchor_iou = 0.5, ignore_iou = 0.7;
+  double cache_mb = 2000.0, cache_scale = 1.25;
+  AugmentConfig augment;
+
+  void visit(Fields& f);
+};
+
+}  // namespace waretwin::train

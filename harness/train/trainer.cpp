@@ -1,0 +1,330 @@
+#include "harness/train/trainer.h"
+
+#include <ATen/ATen.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <opencv2/core/utility.hpp>
+#include <sstream>
+
+#include "core/config.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/version.h"
+#include "harness/train/average_precision.h"
+#include "harness/train/checkpoint.h"
+#include "harness/train/darknet_weights.h"
+#include "harness/train/epoch_loader.h"
+#include "harness/train/network.h"
+#include "harness/train/optimiser.h"
+#include "harness/train/region_loss.h"
+
+namespace waretwin::train {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kUsualPictures = 27000.0;  // shown in a training whose length nobody says: about 20 minutes on two cores
+constexpr int kLeastEpochs = 12;
+constexpr float kLeastScore = 0.005f, kNmsIou = 0.45f;  // of validation
+constexpr std::int64_t kMegabyte = 1'000'000;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+LabelledSet read_split(const fs::path& dataset, const std::string& split) {
+  LabelledSet set = read_labelled_set(dataset, split);
+  if (set.images.empty()) throw Error(dataset, "split '" + split + "' has no pictures; expected some to train a detector");
+  const bool labelled = std::any_of(set.images.begin(), set.images.end(), [](const LabelledImage& image) {
+    return std::any_of(image.boxes.begin(), image.boxes.end(), [](const LabelledBox& box) { return !box.ignored; });
+  });
+  if (!labelled)
+    throw Error(dataset, "split '" + split + "' has " + std::to_string(set.images.size()) + " pictures and no box; expected labels");
+  return set;
+}
+
+std::vector<BoxShape> shapes_in_cells(const LabelledSet& set, const TrainConfig& config) {
+  std::vector<BoxShape> shapes;
+  for (const LabelledImage& image : set.images) {
+    for (const LabelledBox& box : image.boxes) {
+      if (box.ignored) continue;
+      shapes.push_back({box.share.width * config.width / NetworkPlan::kCell, box.share.height * config.height / NetworkPlan::kCell});
+    }
+  }
+  return shapes;
+}
+
+std::string config_text(TrainConfig config) {
+  return write_config([&](Fields& f) { f.group("train", config, "training of a detector"); });
+}
+
+// What must be the same for a training to go on: all but how long it takes.
+std::string lasting_text(const TrainConfig& config, const LabelledSet& set) {
+  TrainConfig lasting = config;
+  lasting.epochs = lasting.patience = 0;
+  lasting.minutes = lasting.cache_mb = 0.0;
+  std::string text = config_text(lasting) + "pictures: " + std::to_string(set.images.size()) + "\nclasses:";
+  for (const std::string& name : set.classes) text += " " + name;
+  return text + "\n";
+}
+
+void check_same(const fs::path& file, const std::string& before, const std::string& now) {
+  std::istringstream old_lines(before), new_lines(now);
+  for (std::string old_line, new_line; std::getline(old_lines, old_line);) {
+    std::getline(new_lines, new_line);
+    if (old_line == new_line) continue;
+    const auto plain = [](const std::string& line) {
+      return line.substr(std::min(line.size(), line.find_first_not_of(' '))).substr(0, 80);
+    };
+    throw Error(file, "was begun with '" + plain(old_line) + "', now it is '" + plain(new_line) + "'; expected the same to --resume");
+  }
+}
+
+at::Tensor as_tensor(const std::vector<Sample>& batch) {
+  const cv::Size size = batch.front().picture.size();
+  // Row, column, channel: what libtorch calls channels last.
+  at::Tensor bytes = at::empty({static_cast<std::int64_t>(batch.size()), size.height, size.width, 3}, at::kByte);
+  const std::size_t each = 3 * static_cast<std::size_t>(size.area());
+  for (std::size_t i = 0; i < batch.size(); ++i) std::memcpy(bytes.data_ptr<std::uint8_t>() + i * each, batch[i].picture.data, each);
+  return bytes.permute({0, 3, 1, 2}).to(at::kFloat).div_(255.0);
+}
+
+class Training {
+ public:
+  Training(const TrainingRequest& request, const TrainingHooks& hooks)
+      : request_(request),
+        hooks_(hooks),
+        config_(request.config),
+        train_(read_split(request.dataset, "train")),
+        valid_(read_split(request.dataset, "valid")),
+        plan_(make_plan()),
+        network_(plan_, config_.seed),
+        average_(plan_, config_.seed),
+        optimiser_(network_.learned(), config_.weight_decay),
+        valid_pictures_(valid_, {config_.width, config_.height}, cache_bytes() / 2),
+        train_pictures_(train_, cached_size(),
+                        cache_bytes() - std::min(cache_bytes() / 2, bytes_of(valid_, {config_.width, config_.height}))) {
+    if (train_.classes != valid_.classes) throw Error(request.dataset, "splits train and valid name different classes");
+    if (config_.epochs == 0 && config_.minutes == 0.0) {
+      config_.epochs = std::max(kLeastEpochs, static_cast<int>(std::ceil(kUsualPictures / (steps_per_epoch() * config_.batch))));
+    }
+  }
+
+  TrainingSummary run() {
+    make_folder(request_.out);
+    load();
+    write_file(request_.out / "train.yaml",
+               "# waretwin " + std::string(kVersion) + ", dataset " + request_.dataset.string() + "\n" + config_text(config_));
+    announce();
+    while (!finished()) {
+      run_epoch();
+      write_file(request_.out / "log.csv", state_.log);
+      save();
+    }
+    return write_model();
+  }
+
+ private:
+  NetworkPlan make_plan() const {
+    const std::vector<BoxShape> shapes = shapes_in_cells(train_, config_);
+    return plan_network(config_.width, config_.height, static_cast<int>(train_.classes.size()), find_anchors(shapes, config_.anchors));
+  }
+
+  std::int64_t cache_bytes() const { return static_cast<std::int64_t>(config_.cache_mb) * kMegabyte; }
+  cv::Size cached_size() const {
+    return {static_cast<int>(std::lround(config_.cache_scale * config_.width)),
+            static_cast<int>(std::lround(config_.cache_scale * config_.height))};
+  }
+  static std::int64_t bytes_of(const LabelledSet& set, const cv::Size& size) {
+    return 3 * static_cast<std::int64_t>(set.images.size()) * size.area();
+  }
+
+  int steps_per_epoch() const { return static_cast<int>(epoch_order(train_.images.size(), config_, 0).size()) / config_.batch; }
+  fs::path checkpoint_file() const { return request_.out / "checkpoint"; }
+
+  // How much of the training is over: the schedule of learning rate and augmentation. By time only where a limit is set.
+  double share_done(double step) const {
+    double share = config_.epochs > 0 ? step / (static_cast<double>(config_.epochs) * steps_per_epoch()) : 0.0;
+    if (config_.minutes > 0.0) {
+      // The time that validation takes is kept for it.
+      const double seconds = state_.seconds + validation_seconds_ + (training_ ? seconds_since(epoch_start_) : 0.0);
+      share = std::max(share, seconds / (60.0 * config_.minutes));
+    }
+    return std::min(share, 1.0);
+  }
+
+  bool finished() const {
+    const bool patient = config_.patience == 0 || state_.best_epoch < 0 || state_.epochs_done - state_.best_epoch < config_.patience;
+    return state_.epochs_done > 0 && (share_done(static_cast<double>(state_.steps)) >= 1.0 || !patient);
+  }
+
+  double rate_at(double share) const {
+    const double cosine = config_.final_rate + (1.0 - config_.final_rate) * 0.5 * (1.0 + std::cos(M_PI * share));
+    return config_.learning_rate * cosine * std::min(1.0, static_cast<double>(state_.steps + 1) / (config_.warm_up + 1));
+  }
+
+  void load() {
+    state_.config = lasting_text(config_, train_);
+    state_.log = "epoch,box_loss,object_loss,class_loss,ap50,ap75,side_error_px,learning_rate,seconds\n";
+    for (const std::vector<at::Tensor>& tensors :
+         {network_.learned(), network_.followed(), average_.learned(), average_.followed(), optimiser_.state()}) {
+      state_.tensors.insert(state_.tensors.end(), tensors.begin(), tensors.end());
+    }
+    if (!fs::exists(checkpoint_file())) return;
+    if (!request_.resume) {
+      fs::remove(checkpoint_file());
+      return;
+    }
+    check_same(checkpoint_file(), checkpoint_config(checkpoint_file()), state_.config);
+    read_checkpoint(checkpoint_file(), state_);
+    optimiser_.steps = state_.steps;
+  }
+
+  void save() { write_checkpoint(checkpoint_file(), state_); }
+
+  void announce() const {
+    if (!hooks_.started) return;
+    TrainingSet set;
+    set.train_pictures = train_.images.size();
+    set.valid_pictures = valid_.images.size();
+    set.classes = train_.classes.size();
+    const std::vector<BoxShape> shapes = shapes_in_cells(train_, config_);
+    set.boxes = shapes.size();
+    set.cache_mb =
+        static_cast<double>(std::min(cache_bytes(), bytes_of(train_, cached_size()) + bytes_of(valid_, {config_.width, config_.height}))) /
+        kMegabyte;
+    set.anchor_iou = mean_best_iou(shapes, plan_.anchors);
+    set.parameters = parameter_count(plan_);
+    set.epochs_done = static_cast<int>(state_.epochs_done);
+    hooks_.started(set);
+  }
+
+  void run_epoch() {
+    epoch_start_ = Clock::now();
+    training_ = true;
+    EpochResult result;
+    result.epoch = static_cast<int>(state_.epochs_done) + 1;
+    const bool mosaic = share_done(static_cast<double>(state_.steps)) < 1.0 - config_.augment.plain_share;
+    EpochLoader loader(train_pictures_, config_, static_cast<int>(state_.epochs_done), mosaic);
+    int steps = 0;
+    while (const auto batch = loader.next()) {
+      if (hooks_.check) hooks_.check();
+      const double share = share_done(static_cast<double>(state_.steps));
+      if (share >= 1.0 && steps > 0) break;
+      result.rate = rate_at(share);
+      step(*batch, result);
+      ++steps;
+      report(result.epoch, steps, share);
+    }
+    for (double* const loss : {&result.box_loss, &result.object_loss, &result.class_loss}) *loss /= steps;
+    validate(result);
+    training_ = false;
+    result.seconds = seconds_since(epoch_start_);
+    state_.seconds += result.seconds;
+    ++state_.epochs_done;
+    keep_if_best(result);
+    char line[256];
+    std::snprintf(line, sizeof line, "%d,%.5f,%.5f,%.5f,%.5f,%.5f,%.2f,%.3g,%.2f\n", result.epoch, result.box_loss, result.object_loss,
+                  result.class_loss, result.ap50, result.ap75, result.side_error_px, result.rate, result.seconds);
+    state_.log += line;
+    if (hooks_.epoch) hooks_.epoch(result);
+  }
+
+  void step(const std::vector<Sample>& batch, EpochResult& result) {
+    std::vector<std::vector<TruthBox>> truth;
+    for (const Sample& sample : batch) truth.push_back(sample.boxes);
+    const RegionLoss loss = region_loss(network_.forward(as_tensor(batch), true), truth, plan_, config_);
+    if (!std::isfinite(loss.total.item<double>())) {
+      throw Error("the loss is no number after " + std::to_string(state_.steps) + " steps; expected a smaller train.learning_rate");
+    }
+    loss.total.backward();
+    optimiser_.step(result.rate, config_.largest_gradient);
+    ++state_.steps;
+    // The first weights are soon forgotten.
+    const auto t = static_cast<double>(state_.steps);
+    follow_average(average_, network_, std::min(config_.average_decay, (1.0 + t) / (10.0 + t)));
+    result.box_loss += loss.box;
+    result.object_loss += loss.object;
+    result.class_loss += loss.classes;
+  }
+
+  void report(int epoch, int steps, double share) const {
+    if (!hooks_.progress) return;
+    const double seconds = seconds_since(epoch_start_);
+    const double overall = state_.seconds + seconds;
+    hooks_.progress({share, epoch, steps * config_.batch / std::max(seconds, 1e-9), share > 0.0 ? overall * (1.0 - share) / share : 0.0});
+  }
+
+  void validate(EpochResult& result) {
+    const auto start = Clock::now();
+    const at::NoGradGuard no_gradients;
+    std::vector<std::vector<ScoredBox>> found;
+    std::vector<std::vector<TruthBox>> truth;
+    const std::size_t count = valid_pictures_.count();
+    for (std::size_t first = 0; first < count; first += static_cast<std::size_t>(config_.batch)) {
+      if (hooks_.check) hooks_.check();
+      std::vector<Sample> batch;
+      for (std::size_t i = first; i < std::min(count, first + static_cast<std::size_t>(config_.batch)); ++i)
+        batch.push_back(valid_pictures_.get(i));
+      const at::Tensor output = average_.forward(as_tensor(batch), false).contiguous(at::MemoryFormat::Contiguous);
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        found.push_back(region_boxes(output[static_cast<std::int64_t>(i)].data_ptr<float>(), plan_, kLeastScore, kNmsIou));
+        truth.push_back(batch[i].boxes);
+      }
+    }
+    const int classes = plan_.classes;
+    result.ap50 = average_precision(found, truth, classes, 0.5f);
+    result.ap75 = average_precision(found, truth, classes, 0.75f);
+    // Pictures are taken for 16:9, as those of the camera that the figure is about.
+    result.side_error_px = median_side_error(found, truth, 1280, 720);
+    validation_seconds_ = seconds_since(start);
+  }
+
+  // AP50 decides; a tenth of AP75 tells those apart that find everything.
+  void keep_if_best(EpochResult& result) {
+    const double fitness = result.ap50 + 0.1 * result.ap75;
+    if (state_.best_epoch >= 0 && fitness <= state_.best_fitness) return;
+    result.best = true;
+    state_.best_fitness = fitness;
+    state_.best_ap50 = result.ap50;
+    state_.best_epoch = state_.epochs_done;
+    state_.best_weights = darknet_weights(average_, state_.steps * config_.batch);
+  }
+
+  TrainingSummary write_model() const {
+    const auto file = [&](const char* ending) { return request_.out / (request_.name + ending); };
+    // Old weights never stand beside a new description.
+    fs::remove(file(".weights"));
+    std::string names;
+    for (const std::string& name : train_.classes) names += name + "\n";
+    write_file(file(".cfg"), darknet_cfg(plan_));
+    write_file(file(".names"), names);
+    write_file(file(".weights"), state_.best_weights);
+    return {static_cast<int>(state_.epochs_done), static_cast<int>(state_.best_epoch), state_.best_ap50, state_.seconds, file(".weights")};
+  }
+
+  const TrainingRequest& request_;
+  const TrainingHooks& hooks_;
+  TrainConfig config_;
+  LabelledSet train_, valid_;
+  NetworkPlan plan_;
+  Network network_, average_;
+  Optimiser optimiser_;
+  PictureCache valid_pictures_, train_pictures_;
+  Checkpoint state_;
+  Clock::time_point epoch_start_;
+  bool training_ = false;
+  double validation_seconds_ = 0.0;
+};
+
+}  // namespace
+
+TrainingSummary train_detector(const TrainingRequest& request, const TrainingHooks& hooks) {
+  // OpenCV's own threads would stand in libtorch's way.
+  cv::setNumThreads(1);
+  return Training(request, hooks).run();
+}
+
+}  // namespace waretwin::train
