@@ -47,13 +47,20 @@ class SurfaceMovingWorld final : public btDiscreteDynamicsWorld {
         if (!(point.m_appliedImpulse > 0.0)) continue;
         const Eigen::Vector3d p_W = from_bullet(point.getPositionWorldOnB());
         // Impulses of the first tangent act on body 0 along it and on body 1 against it.
-        if (role0.touched) role0.touched(p_W, role1, point.m_partId1, point.m_appliedImpulse, -point.m_appliedImpulseLateral1);
-        if (role1.touched) role1.touched(p_W, role0, point.m_partId0, point.m_appliedImpulse, point.m_appliedImpulseLateral1);
+        if (role0.touched)
+          role0.touched(p_W, role1, part_of(*manifold->getBody1(), point.m_partId1), point.m_appliedImpulse,
+                        -point.m_appliedImpulseLateral1);
+        if (role1.touched)
+          role1.touched(p_W, role0, part_of(*manifold->getBody0(), point.m_partId0), point.m_appliedImpulse,
+                        point.m_appliedImpulseLateral1);
       }
     }
   }
 
  private:
+  // A body of triangles holds the hall's parts from its user index on; others have -1.
+  static int part_of(const btCollisionObject& body, int part) { return part < 0 ? part : std::max(0, body.getUserIndex()) + part; }
+
   void solveConstraints(btContactSolverInfo& info) override {
     for (int m = 0; m < getDispatcher()->getNumManifolds(); ++m) set_motion(*getDispatcher()->getManifoldByIndexInternal(m));
     btDiscreteDynamicsWorld::solveConstraints(info);
@@ -168,7 +175,15 @@ void BulletWorld::add_floor(BodyRole& role, double friction) {
 }
 
 void BulletWorld::add_triangles(BodyRole& role, const std::vector<std::vector<Eigen::Vector3d>>& parts, double friction) {
-  if (parts.empty()) return;
+  // Bullet's tree has ten bits for a part's number and reads beyond its arrays where there are more: as many bodies as it takes.
+  constexpr std::size_t kMostParts = std::size_t{1} << MAX_NUM_PARTS_IN_BITS;
+  for (std::size_t first = 0; first < parts.size(); first += kMostParts) {
+    const std::size_t count = std::min(kMostParts, parts.size() - first);
+    add_triangles(role, std::span(parts).subspan(first, count), friction, static_cast<int>(first));
+  }
+}
+
+void BulletWorld::add_triangles(BodyRole& role, std::span<const std::vector<Eigen::Vector3d>> parts, double friction, int first) {
   auto mesh = std::make_unique<btTriangleIndexVertexArray>();
   for (const std::vector<Eigen::Vector3d>& part : parts) {
     std::vector<btVector3>& vertices = world_->vertices.emplace_back();
@@ -186,7 +201,9 @@ void BulletWorld::add_triangles(BodyRole& role, const std::vector<std::vector<Ei
     indexed.m_vertexType = PHY_DOUBLE;
     mesh->addIndexedMesh(indexed, PHY_INTEGER);
   }
-  add_body(role, world_->keep(std::make_unique<btBvhTriangleMeshShape>(mesh.get(), true)), Pose::Identity(), 0.0, friction);
+  btRigidBody* const body =
+      add_body(role, world_->keep(std::make_unique<btBvhTriangleMeshShape>(mesh.get(), true)), Pose::Identity(), 0.0, friction);
+  body->setUserIndex(first);
   world_->meshes.push_back(std::move(mesh));
 }
 

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,7 @@ class BulletWorld {
   static BodyRole& role_of(const btCollisionObject& body) { return *static_cast<BodyRole*>(body.getUserPointer()); }
 
  private:
+  void add_triangles(BodyRole& role, std::span<const std::vector<Eigen::Vector3d>> parts, double friction, int first);
   struct World;
   double step_s_;
   std::unique_ptr<World> world_;

@@ -27,8 +27,10 @@ class MotionScene {
   }
 
   // An upright box that stands still; its lower corner before it is turned about it.
-  int add_box(const Eigen::Vector3f& low, const Eigen::Vector3f& size, int object = -1, float yaw = 0.0f) {
-    return add_instance(scene_, box_, placed(low, size, yaw), object);
+  int add_box(const Eigen::Vector3f& low, const Eigen::Vector3f& size, int object = -1, float yaw = 0.0f, const std::string& name = {}) {
+    const int instance = add_instance(scene_, box_, placed(low, size, yaw), object);
+    if (!name.empty()) scene_.instances.back().name = name;
+    return instance;
   }
 
   // A straight conveyor as a true object, its strip from (x, y) along yaw: a deck of its width with rails beside it.
