@@ -40,14 +40,6 @@ Eigen::Vector2f circle(float turn) {
   return table[static_cast<std::size_t>(turn * static_cast<float>(kSteps)) % kSteps];
 }
 
-void make_basis(const Eigen::Vector3f& n, Eigen::Vector3f& a, Eigen::Vector3f& b) {
-  const float sign = std::copysign(1.0f, n.z());
-  const float p = -1.0f / (sign + n.z());
-  const float q = n.x() * n.y() * p;
-  a = {1.0f + sign * n.x() * n.x() * p, sign * q, -sign * n.x()};
-  b = {q, sign + n.y() * n.y() * p, -n.y()};
-}
-
 DirectLight::DirectLight(const std::vector<Light>& lights) : lights_(lights) {
   for (const Light& light : lights) {
     const bool directional = light.kind == Light::Kind::kDirectional, spot = light.kind == Light::Kind::kSpot;
@@ -126,39 +118,6 @@ void DirectLight::irradiate(const SurfacePoint& point, const Reflection& reflect
 Eigen::Vector3f DirectLight::radiance(int light, const Reflection& reflection, const LightParts& parts) const {
   const auto i = static_cast<std::size_t>(light);
   return lights_[i].intensity.cwiseProduct(reflection.diffuse * parts.diffuse[i] + reflection.specular * parts.specular[i]);
-}
-
-int DirectLight::choose(const LightParts& parts, float pick) {
-  if (!(parts.total > 0.0f)) return -1;
-  float left = pick * parts.total;
-  int last = -1;
-  for (std::size_t i = 0; i < parts.weight.size(); ++i) {
-    if (!(parts.weight[i] > 0.0f)) continue;
-    last = static_cast<int>(i);
-    left -= parts.weight[i];
-    if (left < 0.0f) break;
-  }
-  return last;
-}
-
-Ray DirectLight::shadow_ray(int index, const SurfacePoint& point, float s, float t) const {
-  const Light& light = lights_[static_cast<std::size_t>(index)];
-  Ray ray;
-  ray.origin = lifted(point);
-  if (light.kind == Light::Kind::kDirectional) {
-    ray.direction = -light.direction;
-    return ray;
-  }
-  ray.direction = light.position - ray.origin;
-  ray.far = 0.9999f;
-  const float length = ray.direction.norm();
-  if (light.radius <= 0.0f || length <= light.radius) return ray;
-  Eigen::Vector3f a, b;
-  make_basis(ray.direction / length, a, b);
-  const float radius = light.radius * std::sqrt(s);
-  const Eigen::Vector2f around = circle(t);
-  ray.direction += radius * (around.x() * a + around.y() * b);
-  return ray;
 }
 
 }  // namespace waretwin

@@ -44,23 +44,6 @@ Eigen::Vector2f PixelRays::bent(double u, double v) const {
   return {both[0], both[1]};
 }
 
-Ray PixelRays::at(int u, int v) const {
-  Ray ray;
-  if (rows_.empty()) {
-    ray.origin = station_.origin;
-    ray.time = station_.time;
-    ray.direction = pinhole(u, v);
-    return ray;
-  }
-  const int y = std::clamp(v, 0, height_ - 1);
-  const cv::Vec2f& direction = directions_.ptr<cv::Vec2f>(y)[std::clamp(u, 0, width_ - 1)];
-  const Station& station = rows_[static_cast<std::size_t>(y)].middle;
-  ray.origin = station.origin;
-  ray.time = station.time;
-  ray.direction = station.R_WC * Eigen::Vector3f(direction[0], direction[1], 1.0f);
-  return ray;
-}
-
 Ray PixelRays::at(double u, double v, float moment) const {
   Ray ray;
   if (rows_.empty()) {

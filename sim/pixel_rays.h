@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -61,5 +62,23 @@ class PixelRays {
   cv::Mat directions_;
   std::vector<Stations> rows_;
 };
+
+// Inline for the same reason as DirectLight::shadow_ray.
+inline Ray PixelRays::at(int u, int v) const {
+  Ray ray;
+  if (rows_.empty()) {
+    ray.origin = station_.origin;
+    ray.time = station_.time;
+    ray.direction = pinhole(u, v);
+    return ray;
+  }
+  const int y = std::clamp(v, 0, height_ - 1);
+  const cv::Vec2f& direction = directions_.ptr<cv::Vec2f>(y)[std::clamp(u, 0, width_ - 1)];
+  const Station& station = rows_[static_cast<std::size_t>(y)].middle;
+  ray.origin = station.origin;
+  ray.time = station.time;
+  ray.direction = station.R_WC * Eigen::Vector3f(direction[0], direction[1], 1.0f);
+  return ray;
+}
 
 }  // namespace waretwin

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "core/error.h"
@@ -165,10 +166,13 @@ Eigen::Vector4f TextureSampler::sample(const Eigen::Vector2f& uv, float footprin
   const float wa = (1.0f - t.fx) * (1.0f - t.fy), wb = t.fx * (1.0f - t.fy), wc = (1.0f - t.fx) * t.fy, wd = t.fx * t.fy;
   const auto& table = encoding_ == Encoding::kSrgb ? decode_table() : linear_table();
   const auto& plain = linear_table();
-  return {wa * table[a[0]] + wb * table[b[0]] + wc * table[c[0]] + wd * table[d[0]],
-          wa * table[a[1]] + wb * table[b[1]] + wc * table[c[1]] + wd * table[d[1]],
-          wa * table[a[2]] + wb * table[b[2]] + wc * table[c[2]] + wd * table[d[2]],
-          wa * plain[a[3]] + wb * plain[b[3]] + wc * plain[c[3]] + wd * plain[d[3]]};
+  // Four channels at once, by the compilers' vector extension (GCC and Clang).
+  using Four = float __attribute__((vector_size(16)));
+  const auto texel = [&](const std::uint8_t* rgba) { return Four{table[rgba[0]], table[rgba[1]], table[rgba[2]], plain[rgba[3]]}; };
+  const Four sum = wa * texel(a) + wb * texel(b) + wc * texel(c) + wd * texel(d);
+  Eigen::Vector4f out;
+  std::memcpy(out.data(), &sum, sizeof sum);
+  return out;
 }
 
 }  // namespace waretwin
