@@ -126,7 +126,7 @@ TEST_F(Training, BadSetsAreRefusedInOneLine) {
   EXPECT_ERROR(train_detector(wanted, {}), "p1003.png", "no picture that can be read");
   const std::string data = read_file(set_ / "set.data");
   write_file(set_ / "set.data", "train = train.txt\nnames = set.names\n");
-  EXPECT_ERROR(train_detector(wanted, {}), "set.data", "valid");
+  EXPECT_ERROR(train_detector(wanted, {}), "no split 'valid'");
   write_file(set_ / "set.data", data);
   write_file(set_ / "valid.txt", "");
   EXPECT_ERROR(train_detector(wanted, {}), "valid", "no pictures");
