@@ -11,8 +11,7 @@ namespace waretwin::generate {
 
 class Dice : public waretwin::Dice {
  public:
-  Dice(std::uint64_t seed, std::string_view purpose, int attempt = 0)
-      : waretwin::Dice(RandomStream(seed, "generate", purpose, attempt)) {}
+  Dice(std::uint64_t seed, std::string_view purpose, int attempt = 0) : waretwin::Dice(RandomStream(seed, "generate", purpose, attempt)) {}
 };
 
 // To the millimetre, as one would measure it.
