@@ -254,7 +254,9 @@ class Training {
     if (!hooks_.progress) return;
     const double seconds = seconds_since(epoch_start_);
     const double overall = state_.seconds + seconds;
-    hooks_.progress({share, epoch, steps * config_.batch / std::max(seconds, 1e-9), share > 0.0 ? overall * (1.0 - share) / share : 0.0});
+    double left = share > 0.0 ? overall * (1.0 - share) / share : 0.0;
+    if (config_.minutes > 0.0) left = std::min(left, std::max(0.0, 60.0 * config_.minutes - overall));
+    hooks_.progress({share, epoch, steps * config_.batch / std::max(seconds, 1e-9), left});
   }
 
   void validate(EpochResult& result) {
