@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "core/error.h"
 
@@ -18,12 +19,15 @@ using Json = nlohmann::ordered_json;
 double rounded(double share) { return std::round(share * 1e4) / 1e4; }
 Json box_json(const cv::Rect& box) { return {box.x, box.y, box.width, box.height}; }
 
+// Processes of several machines may finish one set in one folder, and have the same ids.
 fs::path part_of(const fs::path& file, const char* part) {
-  return file.parent_path() / ("." + file.stem().string() + "." + part + "." + std::to_string(getpid()));
+  std::random_device random;
+  return file.parent_path() / ("." + file.stem().string() + "." + part + "." + std::to_string(getpid()) + "-" + std::to_string(random()));
 }
 
 void append_file(std::ofstream& out, const fs::path& part) {
   std::ifstream in(part, std::ios::binary);
+  if (!in) throw Error(part, "is gone before it was put into its file");
   if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int kThumbnails = 48;
 const std::vector<std::string> kSplits = {"train", "valid", "test"};
 
-// The lists grow in memory: twenty bytes a picture.
+// Lists and checksums grow in memory: about a kilobyte a picture.
 void write_lists(const fs::path& folder, const std::map<std::string, std::string>& lists, const std::vector<std::string>& classes,
                  std::map<std::string, std::string>& sums) {
   const auto write = [&](const std::string& name, const std::string& text) {
@@ -70,7 +70,13 @@ DatasetSummary write_index(const fs::path& folder, int halls, const std::vector<
       ++images_of_split[record.split];
       ++images_of_kind[image.kind];
       summary.empty += image.labels.labels.empty();
-      for (const ImageLabel& label : image.labels.labels) ++summary.labels.at(static_cast<std::size_t>(label.class_index));
+      for (const ImageLabel& label : image.labels.labels) {
+        const auto index = static_cast<std::size_t>(label.class_index);
+        if (index >= classes.size()) {
+          throw Error(folder / record_name(number), "class " + std::to_string(label.class_index) + " of " + std::to_string(classes.size()));
+        }
+        ++summary.labels[index];
+      }
       for (const LeftOut& object : image.labels.left_out) ++(object.why == LeftOut::Why::kSmall ? summary.small : summary.hidden);
       sums.insert(image.files.begin(), image.files.end());
       lists[record.split] += "images/" + image.name + ".jpg\n";

@@ -63,20 +63,34 @@ std::string description(const DatasetConfig& config, const std::vector<std::uniq
   return resolved_config([&](Fields& f) { tree.visit(f); }, about);
 }
 
-// A folder belongs to one set: its dataset.yaml says which.
+// A folder belongs to one set: its dataset.yaml says which. Several shards may begin at the same time.
 void claim(const fs::path& folder, const std::string& text) {
   const fs::path file = folder / "dataset.yaml";
-  if (fs::exists(file)) {
-    if (read_file(file) != text) {
-      throw Error(file, "is of a set with other settings, halls or formats; expected the same as before, or a new folder");
-    }
-    return;
-  }
-  if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder))) {
+  const auto is_ours = [&] {
+    if (!fs::exists(file)) return false;
+    if (read_file(file) == text) return true;
+    throw Error(file, "is of a set with other settings, halls or formats; expected the same as before, or a new folder");
+  };
+  if (is_ours()) return;
+  const auto is_foreign = [](const fs::directory_entry& entry) { return !entry.path().filename().string().starts_with(".dataset."); };
+  if (fs::exists(folder) &&
+      (!fs::is_directory(folder) || std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_foreign))) {
+    if (is_ours()) return;  // another shard was faster
     throw Error(folder, "is no set of training pictures (it has no dataset.yaml); expected a new name or an empty folder");
   }
   make_folder(folder);
   write_file(file, text);
+}
+
+// A hall is done when its record and all files that it names are there: parts of a set may have been copied together.
+bool is_done(const fs::path& folder, int number) {
+  if (!fs::exists(folder / record_name(number))) return false;
+  for (const ImageRecord& image : read_hall_record(folder / record_name(number)).images) {
+    for (const auto& [name, sum] : image.files) {
+      if (!fs::exists(folder / name)) return false;
+    }
+  }
+  return true;
 }
 
 // Class, and the box's middle and size as shares of the picture; for labels, and for objects that are left out.
@@ -120,21 +134,34 @@ ImageRecord write_photograph(const Photograph& photograph, const fs::path& folde
 
 }  // namespace
 
-std::vector<std::string> split_halls(int halls, double valid_share, double test_share) {
-  // Each hall goes to the split that is farthest behind its share; validation comes first, so that small sets have some.
+std::vector<std::string> split_halls(int halls, int sources, double valid_share, double test_share) {
   const double shares[] = {1.0 - valid_share - test_share, valid_share, test_share};
   const char* const names[] = {"train", "valid", "test"};
-  int counts[] = {0, 0, 0};
-  std::vector<std::string> splits;
-  for (int h = 0; h < halls; ++h) {
-    int most = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (shares[k] * (h + 1) - counts[k] > shares[most] * (h + 1) - counts[most] + 1e-9) most = k;
+  int counts[] = {0, 0, 0}, seen = 0;
+  std::vector<int> splits(static_cast<std::size_t>(halls), 0);
+  // Source by source, so that each has its part in every split; each hall goes to the split that is farthest behind its share.
+  for (int source = 0; source < sources; ++source) {
+    for (int h = source; h < halls; h += sources) {
+      ++seen;
+      int most = 0;
+      for (int k = 1; k < 3; ++k) {
+        if (shares[k] * seen - counts[k] > shares[most] * seen - counts[most] + 1e-9) most = k;
+      }
+      ++counts[most];
+      splits[static_cast<std::size_t>(h)] = most;
     }
-    ++counts[most];
-    splits.emplace_back(names[most]);
   }
-  return splits;
+  // A small set has some of each that is asked for, too, as long as it has halls: trainers want a split to validate on.
+  for (int k = 1; k < 3; ++k) {
+    if (!(shares[k] > 0.0) || counts[k] > 0 || halls <= k) continue;
+    const auto last = std::find(splits.rbegin(), splits.rend(), 0);
+    if (last == splits.rend()) continue;
+    *last = k;
+    ++counts[k];
+  }
+  std::vector<std::string> out;
+  for (const int split : splits) out.emplace_back(names[split]);
+  return out;
 }
 
 DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources, const fs::path& folder,
@@ -152,14 +179,14 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   if (config.instances) make_folder(folder / "instances");
 
   const int size = config.hall_size(), halls = (config.count + size - 1) / size;
-  const std::vector<std::string> splits = split_halls(halls, config.valid_share, config.test_share);
+  const std::vector<std::string> splits = split_halls(halls, static_cast<int>(sources.size()), config.valid_share, config.test_share);
   const auto first_image = [&](int number) { return number * size; };
   const auto images_of = [&](int number) { return std::min(size, config.count - first_image(number)); };
   DatasetProgress progress;
   std::deque<int> to_do;
   for (int number = shard.index; number < halls; number += shard.count) {
     progress.of += images_of(number);
-    if (fs::exists(folder / record_name(number))) {
+    if (is_done(folder, number)) {
       progress.found += images_of(number);
     } else {
       to_do.push_back(number);
@@ -207,7 +234,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   }
 
   DatasetSummary summary;
-  for (int number = 0; number < halls; ++number) summary.missing_halls += !fs::exists(folder / record_name(number));
+  for (int number = 0; number < halls; ++number) summary.missing_halls += !is_done(folder, number);
   if (summary.missing_halls > 0) return summary;
   return write_index(folder, halls, classes, formats, sha256(text));
 }

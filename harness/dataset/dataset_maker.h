@@ -46,7 +46,8 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
                             const std::filesystem::path& folder, const DatasetFormats& formats, const Shard& shard,
                             const std::function<void(const DatasetProgress&)>& step = {});
 
-// The split of each hall: as even as the shares allow, whatever their number.
-std::vector<std::string> split_halls(int halls, double valid_share, double test_share);
+// The split of each hall: as even as the shares allow, over all halls and over those of each source (hall h is of source h % sources). Each
+// split with a share has a hall as soon as there are three.
+std::vector<std::string> split_halls(int halls, int sources, double valid_share, double test_share);
 
 }  // namespace waretwin

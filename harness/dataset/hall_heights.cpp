@@ -31,6 +31,9 @@ HallHeights::HallHeights(const Scene& scene, double cell_m, double below_m) : ce
   // Slabs reach below the floor that one walks on; of what is near z = 0, as the vehicle's own floor is.
   if (floor_ < 0.0 && floor_ > -1.0) floor_ = 0.0;
   area_ = Eigen::AlignedBox2d(bounds.min().head<2>().cast<double>(), bounds.max().head<2>().cast<double>());
+  // A hall on a wide plain: coarser cells, as many as fit into a few megabytes.
+  constexpr double kMostCells = 4e6;
+  cell_ = std::max(cell_, std::sqrt(area_.volume() / kMostCells));
   width_ = static_cast<int>(std::ceil(area_.sizes().x() / cell_)) + 1;
   height_ = static_cast<int>(std::ceil(area_.sizes().y() / cell_)) + 1;
   heights_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0.0f);

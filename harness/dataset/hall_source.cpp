@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "core/checksum.h"
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/random.h"
@@ -19,6 +19,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// What the models became, whatever files they came from.
+void add_scene(const Scene& scene, Digest& digest) {
+  for (const Texture& texture : scene.textures) digest.add(texture.rgba);
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Eigen::Vector3f& p : mesh.positions) digest.add_bytes(p.data(), 3 * sizeof(float));
+    for (const auto& set : mesh.uv) {
+      for (const Eigen::Vector2f& uv : set) digest.add_bytes(uv.data(), 2 * sizeof(float));
+    }
+    digest.add(mesh.triangles);
+  }
+  for (const Material& material : scene.materials) {
+    digest.add_bytes(material.base_colour.data(), 4 * sizeof(float));
+    for (const float value : {material.metallic, material.roughness, material.emissive.sum()}) digest.add(value);
+  }
+  for (const Instance& instance : scene.instances) digest.add_bytes(instance.X_WM.data(), 16 * sizeof(float));
+}
+
 class ScenarioSource final : public HallSource {
  public:
   ScenarioSource(const fs::path& file, const std::vector<Setting>& settings) {
@@ -26,10 +43,11 @@ class ScenarioSource final : public HallSource {
     if (hall_.scenario.sensors.cameras.empty()) throw Error(file, "has no camera to take pictures with (sensors.cameras)");
     hall_.name = hall_.scenario.name;
     hall_.scene = std::make_shared<const Scene>(build_scene(hall_.scenario));
-    std::string bytes = read_file(file);
-    for (const ModelPlacement& model : hall_.scenario.models) bytes += sha256(read_file(file.parent_path() / model.file));
-    for (const Setting& setting : settings) bytes += setting.key + "=" + setting.value + "\n";
-    description_ = "scenario " + hall_.name + " " + sha256(bytes).substr(0, 16);
+    Digest digest;
+    digest.add(read_file(file));
+    for (const Setting& setting : settings) digest.add(setting.key + "=" + setting.value);
+    add_scene(*hall_.scene, digest);
+    description_ = "scenario " + hall_.name + " " + digest.hex();
   }
   Hall hall(std::uint64_t) const override { return hall_; }
   std::vector<std::string> classes() const override {
@@ -72,7 +90,14 @@ class ScratchFolder {
 class GeneratedSource final : public HallSource {
  public:
   GeneratedSource(std::string style, std::uint64_t seed, std::vector<Setting> settings)
-      : style_(std::move(style)), seed_(seed), settings_(std::move(settings)) {}
+      : style_(std::move(style)), seed_(seed), settings_(std::move(settings)) {
+    // Mistakes are found before anything is made.
+    Scenario like_any;
+    like_any.models.emplace_back().file = "hall.glb";
+    like_any.robot.route.emplace_back();
+    like_any.sensors = SensorsConfig::of_the_paper();
+    apply_settings(settings_, [&](Fields& f) { like_any.visit(f); });
+  }
 
   Hall hall(std::uint64_t number) const override {
     generate::GenerateConfig config;

@@ -107,6 +107,9 @@ HallRecord read_hall_record(const std::filesystem::path& file) {
     record.number = json.at("number");
     record.split = json.at("split");
     for (const Json& image : json.at("images")) record.images.push_back(image_from(image));
+    if (record.split != "train" && record.split != "valid" && record.split != "test") {
+      throw Error(file, "split '" + record.split + "'; expected train, valid or test");
+    }
     return record;
   } catch (const nlohmann::json::exception& problem) {
     throw Error(file, "is no record of a hall's pictures (" + std::string(problem.what()) + "); delete it and make the set again");

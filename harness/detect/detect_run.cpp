@@ -94,7 +94,6 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
   make_folder(out);
   check_place(out, set);
   std::error_code ignored;
-  fs::remove(out / "metrics.json", ignored);  // it would speak of other detections
   DetectRunResult result;
   std::vector<double> times_ms;
   DrawnNames drawn_names;
@@ -131,6 +130,7 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
     file.append("\n]\n");
     file.close();
   });
+  fs::remove(out / "metrics.json", ignored);  // it would speak of other detections
   if (drawn)
     drawn->commit();
   else

@@ -58,7 +58,8 @@ double average_precision(const std::vector<std::vector<ScoredBox>>& found, const
         if (box.class_index != c) continue;
         const TruthBox* const object = best_free(box, truth[n], taken, iou);
         const bool excused = object == nullptr && std::any_of(truth[n].begin(), truth[n].end(), [&](const TruthBox& other) {
-                               return other.ignored && box_iou(box.share, other.share) >= iou;
+                               // As harness/score/scored_boxes.h has it: how much of the detection lies inside.
+                               return other.ignored && other.class_index == c && (box.share & other.share).area() >= iou * box.share.area();
                              });
         if (object != nullptr) taken[static_cast<std::size_t>(object - truth[n].data())] = true;
         if (!excused) judged.push_back({box.score, object != nullptr});

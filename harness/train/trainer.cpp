@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/config.h"
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/version.h"
@@ -67,7 +68,16 @@ std::string lasting_text(const TrainConfig& config, const LabelledSet& set) {
   lasting.minutes = lasting.cache_mb = 0.0;
   std::string text = config_text(lasting) + "pictures: " + std::to_string(set.images.size()) + "\nclasses:";
   for (const std::string& name : set.classes) text += " " + name;
-  return text + "\n";
+  // Boxes make the anchors, which the weights are learned for.
+  Digest boxes;
+  for (const LabelledImage& image : set.images) {
+    boxes.add(image.name);
+    for (const LabelledBox& box : image.boxes) {
+      boxes.add(box.class_index);
+      for (const double value : {box.share.x, box.share.y, box.share.width, box.share.height}) boxes.add(value);
+    }
+  }
+  return text + "\nlabels: " + boxes.hex() + "\n";
 }
 
 void check_same(const fs::path& file, const std::string& before, const std::string& now) {
@@ -106,9 +116,10 @@ class Training {
         valid_pictures_(valid_, {config_.width, config_.height}, cache_bytes() / 2),
         train_pictures_(train_, cached_size(),
                         cache_bytes() - std::min(cache_bytes() / 2, bytes_of(valid_, {config_.width, config_.height}))) {
+    steps_per_epoch_ = static_cast<int>(epoch_order(train_.images.size(), config_, 0).size()) / config_.batch;
     if (train_.classes != valid_.classes) throw Error(request.dataset, "splits train and valid name different classes");
     if (config_.epochs == 0 && config_.minutes == 0.0) {
-      config_.epochs = std::max(kLeastEpochs, static_cast<int>(std::ceil(kUsualPictures / (steps_per_epoch() * config_.batch))));
+      config_.epochs = std::max(kLeastEpochs, static_cast<int>(std::ceil(kUsualPictures / (steps_per_epoch_ * config_.batch))));
     }
   }
 
@@ -141,12 +152,11 @@ class Training {
     return 3 * static_cast<std::int64_t>(set.images.size()) * size.area();
   }
 
-  int steps_per_epoch() const { return static_cast<int>(epoch_order(train_.images.size(), config_, 0).size()) / config_.batch; }
   fs::path checkpoint_file() const { return request_.out / "checkpoint"; }
 
   // How much of the training is over: the schedule of learning rate and augmentation. By time only where a limit is set.
   double share_done(double step) const {
-    double share = config_.epochs > 0 ? step / (static_cast<double>(config_.epochs) * steps_per_epoch()) : 0.0;
+    double share = config_.epochs > 0 ? step / (static_cast<double>(config_.epochs) * steps_per_epoch_) : 0.0;
     if (config_.minutes > 0.0) {
       // The time that validation takes is kept for it.
       const double seconds = state_.seconds + validation_seconds_ + (training_ ? seconds_since(epoch_start_) : 0.0);
@@ -316,6 +326,7 @@ class Training {
   Optimiser optimiser_;
   PictureCache valid_pictures_, train_pictures_;
   Checkpoint state_;
+  int steps_per_epoch_ = 1;
   Clock::time_point epoch_start_;
   bool training_ = false;
   double validation_seconds_ = 0.0;

@@ -299,17 +299,46 @@ TEST(DatasetFolder, BelongsToOneSet) {
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
 }
 
+TEST(DatasetFolder, MakesAgainWhatIsGoneAndBearsWhatAKillLeft) {
+  const test::TemporaryFolder folder;
+  const fs::path set = folder.path() / "set";
+  DatasetConfig config = small_set();
+  config.count = 3;
+  config.images_per_hall = 1;
+  make_folder(set);
+  write_file(set / ".dataset.partial-7.yaml", "half");
+  make_dataset(config, small_halls(), set, {}, {});
+  const auto expected = files_of(set);
+  fs::remove(set / "images" / "000001.jpg");
+  fs::remove(set / "halls" / "000002.json");
+  make_dataset(config, small_halls(), set, {}, {});
+  EXPECT_EQ(files_of(set), expected);
+  EXPECT_ERROR(generated_source("flat", 1, {{"sensors.cameras.camera.widht", "640"}}), "widht", "width");
+}
+
 TEST(DatasetSplits, AreAsEvenAsCanBe) {
   for (const int halls : {1, 3, 10, 40, 1000}) {
     std::map<std::string, int> counts;
-    for (const std::string& split : split_halls(halls, 0.2, 0.1)) ++counts[split];
-    EXPECT_NEAR(counts["train"], 0.7 * halls, 1.0);
+    for (const std::string& split : split_halls(halls, 1, 0.2, 0.1)) ++counts[split];
+    if (halls < 3) continue;
+    EXPECT_NEAR(counts["train"], 0.7 * halls, 1.2);
     EXPECT_NEAR(counts["valid"], 0.2 * halls, 1.0);
     EXPECT_NEAR(counts["test"], 0.1 * halls, 1.0);
   }
-  // The first halls of a longer set are in the same splits.
-  const auto few = split_halls(7, 0.1, 0.1), many = split_halls(70, 0.1, 0.1);
-  EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
+  // Each source has its part in each split.
+  for (const int sources : {2, 5}) {
+    const std::vector<std::string> splits = split_halls(200, sources, 0.1, 0.1);
+    std::map<std::pair<int, std::string>, int> counts;
+    for (int h = 0; h < 200; ++h) ++counts[{h % sources, splits[static_cast<std::size_t>(h)]}];
+    for (int source = 0; source < sources; ++source) {
+      for (const char* split : {"valid", "test"}) EXPECT_NEAR((counts[{source, split}]), 20.0 / sources, 1.0) << sources << " " << split;
+    }
+  }
+  for (int halls = 3; halls < 12; ++halls) {
+    const std::vector<std::string> splits = split_halls(halls, 2, 0.1, 0.1);
+    for (const char* split : {"train", "valid", "test"}) EXPECT_NE(std::find(splits.begin(), splits.end(), split), splits.end()) << halls;
+  }
+  EXPECT_EQ(split_halls(1, 1, 0.1, 0.1), (std::vector<std::string>{"train"}));
 }
 
 Hall a_cell() { return generated_source("cell", 11, {})->hall(3); }
