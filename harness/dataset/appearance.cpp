@@ -146,7 +146,6 @@ void vary_materials(Scene& scene, const MaterialVariation& config, Dice& dice) {
     material.roughness = static_cast<float>(std::clamp(static_cast<double>(material.roughness) + rougher, 0.05, 1.0));
     if (repainted || patterned) material.metallic = 0.0f;
     Texels texels;
-    const int had = material.base_colour_texture.texture;
     Texture like;
     if (patterned && !material.alpha_mask) {
       texels = pattern(dice);
@@ -161,7 +160,7 @@ void vary_materials(Scene& scene, const MaterialVariation& config, Dice& dice) {
     }
     if (dirty) {
       if (texels.empty() && material.base_colour_texture.texture >= 0) {
-        like = scene.textures[static_cast<std::size_t>(had)];
+        like = scene.textures[static_cast<std::size_t>(material.base_colour_texture.texture)];
         texels = texels_of(like);
       } else if (texels.empty()) {
         texels = Texels(kDrawn, kDrawn, cv::Vec4b(255, 255, 255, 255));

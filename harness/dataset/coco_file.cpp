@@ -25,33 +25,35 @@ fs::path part_of(const fs::path& file, const char* part) {
   return file.parent_path() / ("." + file.stem().string() + "." + part + "." + std::to_string(getpid()) + "-" + std::to_string(random()));
 }
 
-void append_file(std::ofstream& out, const fs::path& part) {
-  std::ifstream in(part, std::ios::binary);
-  if (!in) throw Error(part, "is gone before it was put into its file");
-  if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
-}
-
 }  // namespace
 
+CocoFile::List::List(const fs::path& file, const char* key) : key_(key), part_(part_of(file, key)), entries_(part_) {}
+
+CocoFile::List::~List() {
+  std::error_code ignored;
+  fs::remove(part_, ignored);
+}
+
+void CocoFile::List::add(const std::string& entry) {
+  entries_.append((count_ > 0 ? ",\n" : "") + entry);
+  ++count_;
+}
+
+void CocoFile::List::put_into(std::ostream& out) {
+  entries_.close();
+  out << ",\n\"" << key_ << "\":[\n";
+  std::ifstream in(part_, std::ios::binary);
+  if (!in) throw Error(part_, "is gone before it was put into its file");
+  if (count_ > 0) out << in.rdbuf();
+  out << "\n]";
+}
+
 CocoFile::CocoFile(fs::path file, const std::vector<std::string>& classes, const std::string& about)
-    : file_(std::move(file)),
-      images_file_(part_of(file_, "images")),
-      annotations_file_(part_of(file_, "annotations")),
-      left_out_file_(part_of(file_, "left_out")),
-      images_(images_file_),
-      annotations_(annotations_file_),
-      left_out_(left_out_file_) {
+    : file_(std::move(file)), images_(file_, "images"), annotations_(file_, "annotations"), left_out_(file_, "left_out") {
   Json categories = Json::array();
   for (std::size_t i = 0; i < classes.size(); ++i) categories.push_back({{"id", i + 1}, {"name", classes[i]}, {"supercategory", "object"}});
   head_ =
       "{\"info\":" + Json({{"description", about}, {"version", "1.0"}}).dump() + ",\n\"licenses\":[],\n\"categories\":" + categories.dump();
-}
-
-CocoFile::~CocoFile() {
-  std::error_code ignored;
-  fs::remove(images_file_, ignored);
-  fs::remove(annotations_file_, ignored);
-  fs::remove(left_out_file_, ignored);
 }
 
 void CocoFile::add(const ImageRecord& image, const std::string& hall) {
@@ -67,11 +69,10 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
   entry["kind"] = image.kind;
   entry["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
   entry["X_WC"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
-  images_.append((any_image_ ? ",\n" : "") + entry.dump());
-  any_image_ = true;
+  images_.add(entry.dump());
   for (const ImageLabel& label : image.labels.labels) {
     Json annotation;
-    annotation["id"] = annotation_count_ + 1;
+    annotation["id"] = annotations_.count() + 1;
     annotation["image_id"] = image.index + 1;
     annotation["category_id"] = label.class_index + 1;
     annotation["bbox"] = box_json(label.box);
@@ -84,8 +85,7 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
     annotation["occluded"] = rounded(label.occluded);
     annotation["truncated"] = rounded(label.truncated);
     annotation["object"] = label.object_id;
-    annotations_.append((annotation_count_ > 0 ? ",\n" : "") + annotation.dump());
-    ++annotation_count_;
+    annotations_.add(annotation.dump());
   }
   for (const LeftOut& object : image.labels.left_out) {
     Json left_out;
@@ -93,24 +93,16 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
     left_out["category_id"] = object.class_index + 1;
     left_out["bbox"] = box_json(object.box);
     left_out["why"] = to_text(object.why);
-    left_out_.append((any_left_out_ ? ",\n" : "") + left_out.dump());
-    any_left_out_ = true;
+    left_out_.add(left_out.dump());
   }
 }
 
 void CocoFile::finish() {
-  images_.close();
-  annotations_.close();
-  left_out_.close();
   write_file_by(file_, [&](const fs::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
-    out << head_ << ",\n\"images\":[\n";
-    append_file(out, images_file_);
-    out << "\n],\n\"annotations\":[\n";
-    append_file(out, annotations_file_);
-    out << "\n],\n\"left_out\":[\n";
-    append_file(out, left_out_file_);
-    out << "\n]}\n";
+    out << head_;
+    for (List* const list : {&images_, &annotations_, &left_out_}) list->put_into(out);
+    out << "}\n";
     out.close();
     if (!out) throw Error(file_, "could not be written; is the disk full?");
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,6 @@ class CocoFile {
  public:
   // Writes to a temporary name until finish(). Throws Error where the file cannot be made.
   CocoFile(std::filesystem::path file, const std::vector<std::string>& classes, const std::string& about);
-  ~CocoFile();
   CocoFile(const CocoFile&) = delete;
   CocoFile& operator=(const CocoFile&) = delete;
 
@@ -26,11 +26,29 @@ class CocoFile {
   void finish();
 
  private:
-  std::filesystem::path file_, images_file_, annotations_file_, left_out_file_;
+  // A list in the making, in a file of its own until it is put into the whole one: COCO lists all images before all annotations.
+  class List {
+   public:
+    List(const std::filesystem::path& file, const char* key);
+    ~List();
+    List(const List&) = delete;
+    List& operator=(const List&) = delete;
+
+    void add(const std::string& entry);
+    long count() const { return count_; }
+    // Nothing may be added after it.
+    void put_into(std::ostream& out);
+
+   private:
+    std::string key_;
+    std::filesystem::path part_;
+    GrowingFile entries_;
+    long count_ = 0;
+  };
+
+  std::filesystem::path file_;
   std::string head_;
-  GrowingFile images_, annotations_, left_out_;  // put together at the end: COCO lists all images before all annotations
-  long annotation_count_ = 0;
-  bool any_image_ = false, any_left_out_ = false;
+  List images_, annotations_, left_out_;
 };
 
 }  // namespace waretwin

@@ -41,8 +41,8 @@ void write_lists(const fs::path& folder, const std::map<std::string, std::string
 
 }  // namespace
 
-DatasetSummary write_index(const fs::path& folder, int halls, const std::vector<std::string>& classes, const DatasetFormats& formats,
-                           const std::string& configuration_sha256) {
+DatasetSummary write_index(const fs::path& folder, int halls, int images, const std::vector<std::string>& classes,
+                           const DatasetFormats& formats, const std::string& configuration_sha256) {
   DatasetSummary summary;
   summary.classes = classes;
   summary.labels.assign(classes.size(), 0);
@@ -56,16 +56,14 @@ DatasetSummary write_index(const fs::path& folder, int halls, const std::vector<
                           "synthetic pictures by waretwin " + std::string(kVersion) + ", " + split);
     }
   }
-  int total = 0;
-  for (int number = 0; number < halls; ++number) total += static_cast<int>(read_hall_record(folder / record_name(number)).images.size());
   std::vector<ImageRecord> shown;
-  const int thumbnails = std::min(kThumbnails, total);
+  const int thumbnails = std::min(kThumbnails, images);
   for (int number = 0; number < halls; ++number) {
     const HallRecord record = read_hall_record(folder / record_name(number));
     sums[record_name(number).generic_string()] = sha256(read_file(folder / record_name(number)));
     for (const ImageRecord& image : record.images) {
       // Evenly over the whole set.
-      if (static_cast<int>(shown.size()) * total <= image.index * thumbnails) shown.push_back(image);
+      if (static_cast<int>(shown.size()) * images <= image.index * thumbnails) shown.push_back(image);
       ++summary.images;
       ++images_of_split[record.split];
       ++images_of_kind[image.kind];

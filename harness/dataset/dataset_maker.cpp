@@ -184,9 +184,11 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   const auto images_of = [&](int number) { return std::min(size, config.count - first_image(number)); };
   DatasetProgress progress;
   std::deque<int> to_do;
+  std::vector<bool> done(static_cast<std::size_t>(halls), false);
   for (int number = shard.index; number < halls; number += shard.count) {
     progress.of += images_of(number);
     if (is_done(folder, number)) {
+      done[static_cast<std::size_t>(number)] = true;
       progress.found += images_of(number);
     } else {
       to_do.push_back(number);
@@ -231,12 +233,14 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
     }
     while (!writing.empty()) take_written();
     write_file(folder / record_name(number), to_json(record));
+    done[static_cast<std::size_t>(number)] = true;
   }
 
   DatasetSummary summary;
-  for (int number = 0; number < halls; ++number) summary.missing_halls += !is_done(folder, number);
+  for (int number = 0; number < halls; ++number)
+    summary.missing_halls += !done[static_cast<std::size_t>(number)] && !is_done(folder, number);
   if (summary.missing_halls > 0) return summary;
-  return write_index(folder, halls, classes, formats, sha256(text));
+  return write_index(folder, halls, config.count, classes, formats, sha256(text));
 }
 
 }  // namespace waretwin
