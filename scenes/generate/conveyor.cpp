@@ -35,8 +35,8 @@ void add_face(std::vector<SurfacePatch>& out, const Vector3d& middle, const Vect
 }
 
 // Rollers show what slants to either side of their top to cameras before and behind: patches whose normals lean along x (or along the
-// curve).
-void add_roller_flanks(std::vector<SurfacePatch>& patches, const Vector3d& p, const Vector3d& along, double area) {
+// curve). `p` is a copy: it may be that of a patch in `patches`, which move when they grow.
+void add_roller_flanks(std::vector<SurfacePatch>& patches, const Vector3d p, const Vector3d& along, double area) {
   for (const double side : {-1.0, 1.0}) {
     patches.push_back({p, (0.9 * side * along + 0.44 * Vector3d::UnitZ()).normalized(), 0.35 * area});
   }
