@@ -52,7 +52,7 @@ at::Tensor Network::forward(const at::Tensor& pictures, bool training) {
         x = at::conv2d(x, p.weight, layer.normalised ? at::Tensor() : p.bias, layer.stride, layer.size / 2);
         if (layer.normalised) {
           x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, training, kStatisticsMomentum, kEpsilon, false);
-          x = at::leaky_relu(x, kSlope);
+          at::leaky_relu_(x, kSlope);
         }
         break;
       case LayerPlan::Kind::kUpsample:

@@ -25,7 +25,7 @@ void TrainConfig::visit(Fields& f) {
   if (width % 32 != 0) f.reject("width", std::to_string(width) + "; expected a multiple of 32");
   if (height % 32 != 0) f.reject("height", std::to_string(height) + "; expected a multiple of 32");
   f("anchors", anchors, "box shapes that each cell starts from, found in the data", {.min = 1, .max = 20});
-  f("epochs", epochs, "how many; 0 = as many as make 27,000 pictures, at least 12", {.min = 0, .max = 1000000});
+  f("epochs", epochs, "how many; 0 = as many as make 54,000 pictures, at least 12", {.min = 0, .max = 1000000});
   f("minutes", minutes, "longest training, earlier runs of a resumed one included; 0 = no limit", {.min = 0, .max = 1e6});
   f("epoch_pictures", epoch_pictures, "a smaller set is repeated within an epoch until so many are shown", {.min = 1, .max = 1000000});
   f("patience", patience, "epochs without a better validation after which training ends; 0 = never", {.min = 0, .max = 1000000});

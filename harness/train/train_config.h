@@ -26,10 +26,10 @@ struct AugmentConfig {
 struct TrainConfig {
   int width = 448, height = 256;  // of the network's input
   int anchors = 5;
-  int epochs = 0;        // 0: about 27,000 pictures in all
+  int epochs = 0;        // 0: about 54,000 pictures in all
   double minutes = 0.0;  // 0: no limit
   int epoch_pictures = 800;
-  int patience = 20;  // epochs
+  int patience = 50;  // epochs
   std::uint64_t seed = 1;
   int batch = 8;
   double learning_rate = 0.003, final_rate = 0.02;

@@ -15,7 +15,7 @@ void TrainOptions::add_to(CLI::App& command) {
       ->type_name("DIR");
   command.add_option("--name", name, "of the files: NAME.cfg, NAME.weights, NAME.names")->capture_default_str()->type_name("NAME");
   command.add_flag("--resume", resume, "goes on from the checkpoint in DIR, if there is one");
-  command.add_option("--epochs", epochs, "an epoch shows every picture, few of them several times (default: 27,000 pictures in all)")
+  command.add_option("--epochs", epochs, "an epoch shows every picture, few of them several times (default: 54,000 pictures in all)")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command.add_option("--minutes", minutes, "trains so long, validation included")->type_name("M")->check(number_from_to(0.01, 1e6));

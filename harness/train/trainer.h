@@ -27,8 +27,9 @@ struct TrainingSet {
 struct EpochResult {
   int epoch = 0;  // from 1
   double box_loss = 0.0, object_loss = 0.0, class_loss = 0.0;
-  double ap50 = 0.0, ap75 = 0.0;  // on the valid split, by the averaged weights
-  double side_error_px = 0.0;     // median, at a picture width of 1280
+  // On the valid split, by the averaged weights; `ap` is COCO's, over IoU from 0.5 to 0.95.
+  double ap = 0.0, ap50 = 0.0, ap75 = 0.0;
+  double side_error_px = 0.0;  // median, at a picture width of 1280
   double rate = 0.0, seconds = 0.0;
   bool best = false;
 };

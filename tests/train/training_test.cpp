@@ -56,7 +56,7 @@ TEST_F(Training, LearnsRectanglesAndTheDetectorFindsThem) {
   EXPECT_LE(fs::file_size(summary.weights), 4'000'000u);
 
   const std::string log = read_file(wanted.out / "log.csv");
-  EXPECT_TRUE(log.starts_with("epoch,box_loss,object_loss,class_loss,ap50,ap75,side_error_px,learning_rate,seconds\n1,"));
+  EXPECT_TRUE(log.starts_with("epoch,box_loss,object_loss,class_loss,ap,ap50,ap75,side_error_px,learning_rate,seconds\n1,"));
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1 + summary.epochs);
   TrainConfig written;
   read_config(wanted.out / "train.yaml", [&](Fields& f) { f.group("train", written, ""); });
