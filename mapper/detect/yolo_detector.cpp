@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
+#include <opencv2/dnn/all_layers.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
@@ -107,6 +108,11 @@ YoloDetector::YoloDetector(const std::filesystem::path& model, const DetectConfi
     network.net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     network.net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     network.outputs = network.net.getUnconnectedOutLayersNames();
+    // Which boxes overlap too much is decided below, for all kinds of networks, and only among those that reach the confidence.
+    for (const std::string& name : network.outputs) {
+      const auto region = network.net.getLayer(name).dynamicCast<cv::dnn::RegionLayer>();
+      if (region) region->nmsThreshold = 0.0f;
+    }
   } catch (const cv::Exception& problem) {
     throw Error(files.darknet() ? files.cfg : files.onnx, "not a network that can be loaded: " + one_line(problem.err));
   }
