@@ -41,9 +41,9 @@ class DirectLight {
   // Picks a light with probability weight / total; `pick` in [0, 1). -1 where all is dark.
   static int choose(const LightParts& parts, float pick);
 
-  // From the point to a place on the light's emitter, a disc that faces the point; s and t in [0, 1) choose the place. Directional lights
-  // have no size. Any hit on the ray is a shadow.
-  Ray shadow_ray(int light, const SurfacePoint& point, float s, float t) const;
+  // From a place, lifted() off its surface, to one on the light's emitter, a disc that faces it; s and t in [0, 1) choose where.
+  // Directional lights have no size. Any hit on the ray is a shadow.
+  Ray shadow_ray(int light, const Eigen::Vector3f& origin, float s, float t) const;
 
  private:
   const std::vector<Light>& lights_;
@@ -52,10 +52,11 @@ class DirectLight {
 };
 
 // Where rays that leave a surface start: a little above it, so that they don't meet it again.
-inline Eigen::Vector3f lifted(const SurfacePoint& point) {
-  const float size = point.position.cwiseAbs().maxCoeff();
-  return point.position + (2e-4f + 4e-6f * size) * point.face_normal;
+inline Eigen::Vector3f lifted(const Eigen::Vector3f& position, const Eigen::Vector3f& face_normal) {
+  const float size = position.cwiseAbs().maxCoeff();
+  return position + (2e-4f + 4e-6f * size) * face_normal;
 }
+inline Eigen::Vector3f lifted(const SurfacePoint& point) { return lifted(point.position, point.face_normal); }
 
 // Cosine and sine of a turn in [0, 1), in steps of 1/1024.
 Eigen::Vector2f circle(float turn);
@@ -70,10 +71,10 @@ inline void make_basis(const Eigen::Vector3f& n, Eigen::Vector3f& a, Eigen::Vect
 }
 
 // Inline: a ray that a call returns is copied from where it was just written, float by float, in larger pieces, which wait for the memory.
-inline Ray DirectLight::shadow_ray(int index, const SurfacePoint& point, float s, float t) const {
+inline Ray DirectLight::shadow_ray(int index, const Eigen::Vector3f& origin, float s, float t) const {
   const Light& light = lights_[static_cast<std::size_t>(index)];
   Ray ray;
-  ray.origin = lifted(point);
+  ray.origin = origin;
   if (light.kind == Light::Kind::kDirectional) {
     ray.direction = -light.direction;
     return ray;

@@ -47,7 +47,7 @@ Eigen::Vector3f PathTracer::radiance(const Ray& first, float spread, PixelRandom
     const int light = DirectLight::choose(parts, pick);
     Ray shadow;
     if (light >= 0) {
-      shadow = lights_.shadow_ray(light, point, s, t);
+      shadow = lights_.shadow_ray(light, lifted(point), s, t);
       shadow.time = first.time;
     }
     if (light >= 0 && !ray_caster_.occluded(shadow)) {

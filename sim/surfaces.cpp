@@ -41,6 +41,7 @@ Surfaces::Surfaces(std::shared_ptr<const RayCaster> ray_caster) : ray_caster_(st
     use.normal = make_use(material.normal_texture, TextureSampler::Encoding::kLinear);
     use.emissive = make_use(material.emissive_texture, TextureSampler::Encoding::kSrgb);
     use.textured = use.base_colour.sampler || use.metallic_roughness.sampler || use.normal.sampler || use.emissive.sampler;
+    use.only_colour_varies = !use.metallic_roughness.sampler && !use.normal.sampler && !use.emissive.sampler;
     materials_.push_back(use);
   }
   for (const Mesh& mesh : scene.meshes) uv_density_.push_back(density(mesh));
@@ -169,16 +170,39 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
   return point;
 }
 
-SurfacePoint Surfaces::beside(const SurfacePoint& near, const Ray& ray, const Hit& hit, float spread) const {
-  const Place place = this->place(hit);
-  const MaterialUse& use = place.use;
-  if (use.metallic_roughness.sampler || use.emissive.sampler || use.normal.sampler) return at(ray, hit, spread);
-  SurfacePoint point = near;
-  point.position = ray.at(hit.distance);
-  if (use.base_colour.sampler || !place.mesh.colours.empty()) {
-    point.base_colour = base_colour(place, footprint(place, ray, hit, near.face_normal, spread));
+bool Surfaces::only_colour_varies(const Hit& hit) const {
+  const Scene& scene = ray_caster_->scene();
+  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  return materials_[static_cast<std::size_t>(mesh.material)].only_colour_varies;
+}
+
+FaceColours Surfaces::face_colours(const Ray& ray, const Hit& hit, const SurfacePoint& point, float spread) const {
+  const Place at = place(hit);
+  const std::uint32_t* const i = at.corners.i;
+  FaceColours out;
+  out.first_ = at.material.base_colour;
+  if (const auto& colours = at.mesh.colours; !colours.empty()) {
+    out.constant_ = false;
+    out.to_second_ = out.first_.cwiseProduct(colours[i[1]] - colours[i[0]]);
+    out.to_third_ = out.first_.cwiseProduct(colours[i[2]] - colours[i[0]]);
+    out.first_ = out.first_.cwiseProduct(colours[i[0]]);
   }
-  return point;
+  const Use& use = at.use.base_colour;
+  if (use.sampler == nullptr) return out;
+  out.constant_ = false;
+  out.sampler_ = use.sampler;
+  const Footprint size = footprint(at, ray, hit, point.face_normal, spread);
+  out.level_ = use.sampler->level(size.size_M * size.per_metre * use.scale);
+  out.uv_first_ = use.transform.col(2);
+  out.uv_to_second_.setZero();
+  out.uv_to_third_.setZero();
+  if (const auto& uv = at.mesh.uv[use.uv_set]; !uv.empty()) {
+    const auto linear = use.transform.leftCols<2>();
+    out.uv_first_ += linear * uv[i[0]];
+    out.uv_to_second_ = linear * (uv[i[1]] - uv[i[0]]);
+    out.uv_to_third_ = linear * (uv[i[2]] - uv[i[0]]);
+  }
+  return out;
 }
 
 void Surfaces::bend(SurfacePoint& point, const Use& use, float normal_scale, const Mesh& mesh, const Corners& c,

@@ -19,14 +19,40 @@ struct SurfacePoint {
   Eigen::Vector3f emissive;  // radiance, linear RGB
 };
 
+// Base colours of one triangle for hits about a pixel from each other.
+class FaceColours {
+ public:
+  // Linear RGB in [0, 1]; the fourth number means nothing. The hit must be of the same triangle.
+  Eigen::Vector4f at(const Hit& hit) const {
+    Eigen::Vector4f colour = first_ + hit.u * to_second_ + hit.v * to_third_;
+    if (sampler_ != nullptr) {
+      colour = colour.cwiseProduct(sampler_->sample_level(uv_first_ + hit.u * uv_to_second_ + hit.v * uv_to_third_, level_));
+    }
+    return colour.cwiseMax(0.0f).cwiseMin(1.0f);
+  }
+  bool is_constant() const { return constant_; }
+
+ private:
+  friend class Surfaces;
+  bool constant_ = true;
+  // At the triangle's first corner, and how much they change towards the others.
+  Eigen::Vector4f first_, to_second_ = Eigen::Vector4f::Zero(), to_third_ = Eigen::Vector4f::Zero();
+  const TextureSampler* sampler_ = nullptr;
+  int level_ = 0;
+  Eigen::Vector2f uv_first_, uv_to_second_, uv_to_third_;
+};
+
 class Surfaces {
  public:
   explicit Surfaces(std::shared_ptr<const RayCaster> ray_caster);
 
   // `spread` is the angle in radians that one sample covers; it picks the texture size. The hit must be valid.
   SurfacePoint at(const Ray& ray, const Hit& hit, float spread) const;
-  // The same for a hit of the same triangle about a pixel from `near`, which at() gave: its normals are taken to be those of `near`.
-  SurfacePoint beside(const SurfacePoint& near, const Ray& ray, const Hit& hit, float spread) const;
+  // Whether the hit's material has one roughness, emission and shape of normals all over, so that nothing but the base colour differs
+  // between neighbouring hits of a triangle.
+  bool only_colour_varies(const Hit& hit) const;
+  // Colours around a hit; `point` is what at() gave for it.
+  FaceColours face_colours(const Ray& ray, const Hit& hit, const SurfacePoint& point, float spread) const;
   const Material& material(const Hit& hit) const;
   // Interpolated texture coordinates of set 0 or 1, before any texture transform; zero where the mesh has none.
   Eigen::Vector2f uv(const Hit& hit, int set) const;
@@ -42,7 +68,7 @@ class Surfaces {
   };
   struct MaterialUse {
     Use base_colour, metallic_roughness, normal, emissive;
-    bool textured = false;
+    bool textured = false, only_colour_varies = true;
   };
   struct Corners {
     std::uint32_t i[3];

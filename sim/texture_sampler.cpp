@@ -39,22 +39,13 @@ const std::array<float, 256>& linear_table() {
   return table;
 }
 
+// The texel that stands for the i-th along a side, for wrapping that is not kRepeat.
 int wrapped(int i, int size, Texture::Wrap wrap) {
   if (i >= 0 && i < size) return i;
-  switch (wrap) {
-    case Texture::Wrap::kClampToEdge:
-      return std::clamp(i, 0, size - 1);
-    case Texture::Wrap::kRepeat: {
-      const int m = i % size;
-      return m < 0 ? m + size : m;
-    }
-    case Texture::Wrap::kMirroredRepeat: {
-      int m = i % (2 * size);
-      if (m < 0) m += 2 * size;
-      return m < size ? m : 2 * size - 1 - m;
-    }
-  }
-  return 0;
+  if (wrap == Texture::Wrap::kClampToEdge) return std::clamp(i, 0, size - 1);
+  int m = i % (2 * size);
+  if (m < 0) m += 2 * size;
+  return m < size ? m : 2 * size - 1 - m;
 }
 
 // Texel coordinate of u * size, kept where an int can hold it whatever the file says.
@@ -69,28 +60,26 @@ int whole_below(float x) {
 // Of a positive, normal number or infinity: floor(log2(x)), which the library takes many steps for.
 int exponent(float x) { return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127; }
 
-// The four texels around (u, v) and their weights.
+// The two texels around a coordinate along one side of a texture, and how far towards the second it is.
 struct Taps {
-  int x0, x1, y0, y1;
-  float fx, fy;
+  int first, second;
+  float share;
 };
 
-Taps taps(const Eigen::Vector2f& uv, int width, int height, Texture::Wrap wrap_u, Texture::Wrap wrap_v, bool nearest) {
-  const float x = bounded(uv.x() * static_cast<float>(width));
-  const float y = bounded(uv.y() * static_cast<float>(height));
-  if (nearest) {
-    const int xi = wrapped(whole_below(x), width, wrap_u);
-    const int yi = wrapped(whole_below(y), height, wrap_v);
-    return {xi, xi, yi, yi, 0.0f, 0.0f};
-  }
-  const int xi = whole_below(x - 0.5f), yi = whole_below(y - 0.5f);
-  const float xf = static_cast<float>(xi), yf = static_cast<float>(yi);
-  return {wrapped(xi, width, wrap_u),
-          wrapped(xi + 1, width, wrap_u),
-          wrapped(yi, height, wrap_v),
-          wrapped(yi + 1, height, wrap_v),
-          x - 0.5f - xf,
-          y - 0.5f - yf};
+// Inlined: two ints that a call returns are written one by one and read as eight bytes, which wait for the memory.
+[[gnu::always_inline]] inline Taps taps(float coordinate, int size, Texture::Wrap wrap, bool nearest) {
+  float c = bounded(coordinate);
+  const bool repeats = wrap == Texture::Wrap::kRepeat;
+  // Into [0, 1], so that nothing has to be divided below.
+  if (repeats) c -= static_cast<float>(whole_below(c));
+  const float texel = bounded(c * static_cast<float>(size)) - (nearest ? 0.0f : 0.5f);
+  const int i = whole_below(texel);
+  const auto within = [&](int k) {
+    if (!repeats) return wrapped(k, size, wrap);
+    return k < 0 ? k + size : k >= size ? k - size : k;
+  };
+  if (nearest) return {within(i), within(i), 0.0f};
+  return {within(i), within(i + 1), texel - static_cast<float>(i)};
 }
 
 }  // namespace
@@ -98,14 +87,14 @@ Taps taps(const Eigen::Vector2f& uv, int width, int height, Texture::Wrap wrap_u
 float linear_from_srgb(std::uint8_t value) { return decode_table()[value]; }
 
 float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv) {
-  const Taps t = taps(uv, texture.width, texture.height, texture.wrap_u, texture.wrap_v, texture.nearest);
+  const Taps tx = taps(uv.x(), texture.width, texture.wrap_u, texture.nearest);
+  const Taps ty = taps(uv.y(), texture.height, texture.wrap_v, texture.nearest);
   const auto alpha = [&](int x, int y) {
     return static_cast<float>(
         texture.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) + static_cast<std::size_t>(x)) + 3]);
   };
-  const float top = alpha(t.x0, t.y0) + t.fx * (alpha(t.x1, t.y0) - alpha(t.x0, t.y0));
-  const float low = alpha(t.x0, t.y1) + t.fx * (alpha(t.x1, t.y1) - alpha(t.x0, t.y1));
-  return (top + t.fy * (low - top)) / 255.0f;
+  const auto row = [&](int y) { return alpha(tx.first, y) + tx.share * (alpha(tx.second, y) - alpha(tx.first, y)); };
+  return (row(ty.first) + ty.share * (row(ty.second) - row(ty.first))) / 255.0f;
 }
 
 TextureSampler::TextureSampler(const Texture& texture, Encoding encoding)
@@ -150,20 +139,25 @@ void TextureSampler::add_level(const Level& finer) {
   levels_.push_back(std::move(level));
 }
 
-Eigen::Vector4f TextureSampler::sample(const Eigen::Vector2f& uv, float footprint) const {
+int TextureSampler::level(float footprint) const {
   const float texels = footprint * size_;
-  int index = 0;
-  if (texels > 1.4142135f) index = std::min(exponent(texels * 1.4142135f), static_cast<int>(levels_.size()) - 1);
-  const Level& level = levels_[static_cast<std::size_t>(std::max(index, 0))];
-  const Taps t = taps(uv, level.width, level.height, wrap_u_, wrap_v_, nearest_ && index == 0);
+  if (!(texels > 1.4142135f)) return 0;
+  return std::clamp(exponent(texels * 1.4142135f), 0, static_cast<int>(levels_.size()) - 1);
+}
+
+Eigen::Vector4f TextureSampler::sample_level(const Eigen::Vector2f& uv, int index) const {
+  const Level& level = levels_[static_cast<std::size_t>(index)];
+  const bool nearest = nearest_ && index == 0;
+  const Taps tx = taps(uv.x(), level.width, wrap_u_, nearest), ty = taps(uv.y(), level.height, wrap_v_, nearest);
   const auto at = [&level](int x, int y) {
     return &level.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x))];
   };
-  const std::uint8_t* a = at(t.x0, t.y0);
-  const std::uint8_t* b = at(t.x1, t.y0);
-  const std::uint8_t* c = at(t.x0, t.y1);
-  const std::uint8_t* d = at(t.x1, t.y1);
-  const float wa = (1.0f - t.fx) * (1.0f - t.fy), wb = t.fx * (1.0f - t.fy), wc = (1.0f - t.fx) * t.fy, wd = t.fx * t.fy;
+  const std::uint8_t* a = at(tx.first, ty.first);
+  const std::uint8_t* b = at(tx.second, ty.first);
+  const std::uint8_t* c = at(tx.first, ty.second);
+  const std::uint8_t* d = at(tx.second, ty.second);
+  const float fx = tx.share, fy = ty.share;
+  const float wa = (1.0f - fx) * (1.0f - fy), wb = fx * (1.0f - fy), wc = (1.0f - fx) * fy, wd = fx * fy;
   const auto& table = encoding_ == Encoding::kSrgb ? decode_table() : linear_table();
   const auto& plain = linear_table();
   // Four channels at once, by the compilers' vector extension (GCC and Clang).

@@ -24,7 +24,10 @@ class TextureSampler {
 
   // Colour at uv (v = 0 is the top row). `footprint` is the width in uv units that one sample stands for; the copy whose texels are
   // about that wide is filtered bilinearly. Linear values, alpha last.
-  Eigen::Vector4f sample(const Eigen::Vector2f& uv, float footprint) const;
+  Eigen::Vector4f sample(const Eigen::Vector2f& uv, float footprint) const { return sample_level(uv, level(footprint)); }
+  // The same in two steps. Copies are numbered from the full size, 0.
+  int level(float footprint) const;
+  Eigen::Vector4f sample_level(const Eigen::Vector2f& uv, int level) const;
 
  private:
   struct Level {

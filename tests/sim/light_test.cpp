@@ -132,7 +132,7 @@ TEST(Renderer, SoftShadowIsAsWideAsTheEmitterMakesIt) {
     for (int i = 0; i < 40; ++i) {
       for (int j = 0; j < 40; ++j) {
         count +=
-            caster->occluded(direct.shadow_ray(0, floor_at(x, 0), (static_cast<float>(i) + 0.5f) / 40, (static_cast<float>(j) + 0.5f) / 40))
+            caster->occluded(direct.shadow_ray(0, lifted(floor_at(x, 0)), (static_cast<float>(i) + 0.5f) / 40, (static_cast<float>(j) + 0.5f) / 40))
                 ? 0
                 : 1;
       }
