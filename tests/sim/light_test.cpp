@@ -131,10 +131,10 @@ TEST(Renderer, SoftShadowIsAsWideAsTheEmitterMakesIt) {
     int count = 0;
     for (int i = 0; i < 40; ++i) {
       for (int j = 0; j < 40; ++j) {
-        count +=
-            caster->occluded(direct.shadow_ray(0, lifted(floor_at(x, 0)), (static_cast<float>(i) + 0.5f) / 40, (static_cast<float>(j) + 0.5f) / 40))
-                ? 0
-                : 1;
+        count += caster->occluded(
+                     direct.shadow_ray(0, lifted(floor_at(x, 0)), (static_cast<float>(i) + 0.5f) / 40, (static_cast<float>(j) + 0.5f) / 40))
+                     ? 0
+                     : 1;
       }
     }
     return count / 1600.0;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sensors/tone_curve.h"
@@ -51,6 +52,31 @@ TEST(TextureSampler, WrapModes) {
   EXPECT_EQ(red(u + 1), 7);
   EXPECT_EQ(red(-u), 0);
   EXPECT_EQ(red(std::numeric_limits<float>::infinity()), 0);
+}
+
+// Which texel stands for the i-th of a row, by counting.
+int texel_at(long i, long size, Texture::Wrap wrap) {
+  if (wrap == Texture::Wrap::kClampToEdge) return static_cast<int>(std::clamp(i, 0L, size - 1));
+  const long period = wrap == Texture::Wrap::kRepeat ? size : 2 * size;
+  const long m = ((i % period) + period) % period;
+  return static_cast<int>(m < size ? m : 2 * size - 1 - m);
+}
+
+TEST(TextureSampler, WrapsLikeCountingTexels) {
+  for (const auto wrap : {Texture::Wrap::kRepeat, Texture::Wrap::kMirroredRepeat, Texture::Wrap::kClampToEdge}) {
+    for (const int size : {8, 7, 1}) {
+      Texture texture = ramp(size, 1);
+      texture.wrap_u = wrap;
+      const TextureSampler sampler(texture, TextureSampler::Encoding::kLinear);
+      for (int step = -400; step <= 400; ++step) {
+        const double u = step / 64.0 + 1e-4;
+        const double at = u * size - 0.5, left = std::floor(at);
+        const double a = 16 * texel_at(std::lround(left), size, wrap), b = 16 * texel_at(std::lround(left) + 1, size, wrap);
+        const double expected = a + (at - left) * (b - a);
+        EXPECT_NEAR(sampler.sample({static_cast<float>(u), 0.5f}, 0.0f).x() * 255, expected, 0.01) << u << " of " << size;
+      }
+    }
+  }
 }
 
 TEST(TextureSampler, SrgbRoundTripAndAverageOfLight) {
