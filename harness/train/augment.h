@@ -32,8 +32,9 @@ class Dice {
 using PictureSource = std::function<Sample(std::size_t index)>;
 
 // Lays picture `first` (in a mosaic with three more out of `count`) into the network's input of `size`, moved, zoomed and mirrored, and
-// changes colours and sharpness. Boxes follow; those of which too little is left are marked as ignored.
+// changes colours and sharpness. Boxes follow; those of which too little is left are marked as ignored. `late`, towards the end of a
+// training, there are no mosaics, and half of the pictures are shown whole.
 Sample augmented(const PictureSource& source, std::size_t count, std::size_t first, const cv::Size& size, const AugmentConfig& config,
-                 bool with_mosaic, Dice& dice);
+                 bool late, Dice& dice);
 
 }  // namespace waretwin::train

@@ -56,6 +56,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   put(bytes, checkpoint.epochs_done);
   put(bytes, checkpoint.steps);
   put(bytes, checkpoint.best_epoch);
+  put(bytes, checkpoint.best_is_late);
   put(bytes, checkpoint.best_fitness);
   put(bytes, checkpoint.best_ap50);
   put(bytes, checkpoint.seconds);
@@ -75,6 +76,7 @@ void read_checkpoint(const std::filesystem::path& file, Checkpoint& checkpoint) 
   in.get(checkpoint.epochs_done, "its counters");
   in.get(checkpoint.steps, "its counters");
   in.get(checkpoint.best_epoch, "its counters");
+  in.get(checkpoint.best_is_late, "its counters");
   in.get(checkpoint.best_fitness, "its counters");
   in.get(checkpoint.best_ap50, "its counters");
   in.get(checkpoint.seconds, "its counters");

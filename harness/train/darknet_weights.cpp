@@ -18,13 +18,19 @@ void append(std::string& bytes, const at::Tensor& tensor) {
 
 }  // namespace
 
-std::string darknet_weights(const Network& network, std::int64_t pictures_seen) {
+std::string darknet_weights(const Network& network, std::int64_t pictures_seen, double object_shift) {
   std::string bytes;
   for (const std::int32_t part : {0, 2, 0}) append(bytes, part);
   append(bytes, static_cast<std::uint64_t>(pictures_seen));
   for (const Network::Parameters& p : network.layers()) {
     if (!p.weight.defined()) continue;
-    append(bytes, p.bias);
+    at::Tensor bias = p.bias.detach();
+    if (!p.scale.defined()) {
+      const NetworkPlan& plan = network.plan();
+      bias = bias.clone();
+      bias.view({static_cast<std::int64_t>(plan.anchors.size()), plan.numbers()}).select(1, 4).add_(object_shift);
+    }
+    append(bytes, bias);
     if (p.scale.defined()) {
       append(bytes, p.scale.detach().to(at::kDouble) / (p.variance.to(at::kDouble) + Network::kEpsilon).sqrt());
       append(bytes, p.mean);

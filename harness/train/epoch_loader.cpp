@@ -30,13 +30,10 @@ std::vector<std::size_t> epoch_order(std::size_t pictures, const TrainConfig& co
   return order;
 }
 
-EpochLoader::EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool with_mosaic)
-    : cache_(cache),
-      config_(config),
-      epoch_(epoch),
-      with_mosaic_(with_mosaic),
-      order_(epoch_order(cache.count(), config, epoch)),
-      worker_([this] { work(); }) {}
+EpochLoader::EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool late)
+    : cache_(cache), config_(config), epoch_(epoch), late_(late), order_(epoch_order(cache.count(), config, epoch)), worker_([this] {
+        work();
+      }) {}
 
 EpochLoader::~EpochLoader() {
   {
@@ -53,7 +50,7 @@ std::vector<Sample> EpochLoader::make(std::size_t step) {
   for (std::size_t i = step * config_.batch; i < (step + 1) * config_.batch; ++i) {
     Dice dice(random, i);
     batch.push_back(augmented([this](std::size_t index) { return cache_.get(index); }, cache_.count(), order_[i],
-                              {config_.width, config_.height}, config_.augment, with_mosaic_, dice));
+                              {config_.width, config_.height}, config_.augment, late_, dice));
   }
   return batch;
 }

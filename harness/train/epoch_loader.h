@@ -19,7 +19,7 @@ std::vector<std::size_t> epoch_order(std::size_t pictures, const TrainConfig& co
 class EpochLoader {
  public:
   // What epoch and place in it give is the same whatever came before. While it lives, nobody else uses the cache.
-  EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool with_mosaic);
+  EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool late);
   ~EpochLoader();
   EpochLoader(const EpochLoader&) = delete;
   EpochLoader& operator=(const EpochLoader&) = delete;
@@ -35,7 +35,7 @@ class EpochLoader {
   PictureCache& cache_;
   const TrainConfig config_;
   const int epoch_;
-  const bool with_mosaic_;
+  const bool late_;
   const std::vector<std::size_t> order_;
   std::mutex mutex_;
   std::condition_variable changed_;

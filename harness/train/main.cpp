@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -65,7 +66,8 @@ void keep_freed_memory() {
 int train_by(const TrainOptions& options) {
   options.common.apply();
   // Debian's libtorch takes one thread unless told otherwise.
-  at::set_num_threads(options.common.threads > 0 ? options.common.threads : static_cast<int>(std::thread::hardware_concurrency()));
+  at::set_num_threads(options.common.threads > 0 ? options.common.threads
+                                                 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
   keep_freed_memory();
   const train::TrainingRequest request = request_of(options);
   const InterruptWatch watch;

@@ -8,8 +8,6 @@
 namespace waretwin::train {
 namespace {
 
-constexpr double kStatisticsMomentum = 0.05;
-
 at::Tensor drawn_weights(const LayerPlan& layer, int inputs, std::uint64_t seed, std::size_t number, double spread) {
   const RandomStream random(seed, "layer " + std::to_string(number), "weights");
   at::Tensor weight = at::empty({layer.channels, inputs, layer.size, layer.size});
@@ -41,7 +39,12 @@ Network::Network(const NetworkPlan& plan, std::uint64_t seed) : plan_(plan), lay
   for (const at::Tensor& tensor : learned()) tensor.set_requires_grad(true);
 }
 
-at::Tensor Network::forward(const at::Tensor& pictures, bool training) {
+void Network::renew_statistics(const at::Tensor& pictures, int index) {
+  const at::NoGradGuard no_gradients;
+  forward(pictures, true, 1.0 / (index + 1));
+}
+
+at::Tensor Network::forward(const at::Tensor& pictures, bool training, double momentum) {
   std::vector<at::Tensor> outputs;
   at::Tensor x = pictures;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
@@ -51,7 +54,7 @@ at::Tensor Network::forward(const at::Tensor& pictures, bool training) {
       case LayerPlan::Kind::kConvolution:
         x = at::conv2d(x, p.weight, layer.normalised ? at::Tensor() : p.bias, layer.stride, layer.size / 2);
         if (layer.normalised) {
-          x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, training, kStatisticsMomentum, kEpsilon, false);
+          x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, training, momentum, kEpsilon, false);
           at::leaky_relu_(x, kSlope);
         }
         break;

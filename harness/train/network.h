@@ -17,7 +17,11 @@ class Network {
 
   // (N, 3, height, width), RGB from 0 to 1, to (N, anchors * (5 + classes), rows, columns). In training, batch normalisation takes the
   // batch's own statistics and follows them.
-  at::Tensor forward(const at::Tensor& pictures, bool training);
+  at::Tensor forward(const at::Tensor& pictures, bool training) { return forward(pictures, training, kStatisticsMomentum); }
+
+  // Finds means and variances anew for the present weights, as the mean over batches: what follows a training is not quite theirs. Call
+  // with index 0, 1, 2 ... for each batch.
+  void renew_statistics(const at::Tensor& pictures, int index);
 
   const NetworkPlan& plan() const { return plan_; }
 
@@ -35,6 +39,9 @@ class Network {
   static constexpr double kSlope = 0.1;     // below zero
 
  private:
+  static constexpr double kStatisticsMomentum = 0.05;
+  at::Tensor forward(const at::Tensor& pictures, bool training, double momentum);
+
   NetworkPlan plan_;
   std::vector<Parameters> layers_;
 };

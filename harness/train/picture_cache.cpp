@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "mapper/detect/resized_picture.h"
 
 namespace waretwin::train {
 
@@ -20,14 +21,14 @@ Sample PictureCache::get(std::size_t index) {
   if (!kept_[index].empty()) return {kept_[index], boxes_[index]};
   cv::Mat picture;
   try {
-    picture = cv::imread(files_[index].string(), cv::IMREAD_COLOR);
+    // Labels know nothing of an orientation that a camera noted.
+    picture = cv::imread(files_[index].string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
     picture.release();
   }
   if (picture.empty()) throw Error(files_[index], "no picture that can be read; expected a JPEG or PNG file");
-  // As the detector does it.
-  cv::Mat small;
-  cv::resize(picture, small, size_, 0, 0, cv::INTER_LINEAR);
+  cv::Mat small(size_, CV_8UC3);
+  resize_picture(picture, small);
   cv::cvtColor(small, small, cv::COLOR_BGR2RGB);
   const auto bytes = static_cast<std::int64_t>(small.total() * small.elemSize());
   if (bytes <= free_bytes_) {

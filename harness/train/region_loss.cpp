@@ -36,7 +36,9 @@ std::vector<Positive> assign(const std::vector<std::vector<TruthBox>>& truth, co
   return positives;
 }
 
-bool is_no_mistake(const cv::Rect2f& predicted, const std::vector<TruthBox>& truth, double ignore_iou) {
+// `box_anywhere` may reach beyond the picture, where a detector cuts it off.
+bool is_no_mistake(const cv::Rect2f& box_anywhere, const std::vector<TruthBox>& truth, double ignore_iou) {
+  const cv::Rect2f predicted = box_anywhere & cv::Rect2f(0, 0, 1, 1);
   for (const TruthBox& box : truth) {
     if (box.ignored ? (predicted & box.share).area() > 0.5f * predicted.area() : box_iou(predicted, box.share) > ignore_iou) return true;
   }

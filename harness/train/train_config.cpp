@@ -8,7 +8,8 @@ void AugmentConfig::visit(Fields& f) {
   f("zoom_most", zoom_most, "largest size of what is seen", {.min = 1, .max = 10});
   f("aspect", aspect, "share by which width may change against height", {.min = 0, .max = 0.9});
   f("mosaic", mosaic, "chance that four pictures are laid into one", {.min = 0, .max = 1});
-  f("plain_share", plain_share, "share of the training, at its end, without mosaics", {.min = 0, .max = 1});
+  f("plain_share", plain_share, "share of the training, at its end, without mosaics, when half of the pictures are shown whole",
+    {.min = 0, .max = 1});
   f("hue_deg", hue_deg, "colours turn by up to this much", {.min = 0, .max = 180});
   f("saturation", saturation, "saturation changes by a factor of up to 1 + this", {.min = 0, .max = 5});
   f("exposure", exposure, "brightness changes by a factor of up to 1 + this", {.min = 0, .max = 5});

@@ -9,10 +9,10 @@ namespace waretwin::train {
 
 struct AugmentConfig {
   double flip = 0.5;  // chance
-  double zoom_least = 0.6, zoom_most = 1.7;
+  double zoom_least = 0.7, zoom_most = 1.7;
   double aspect = 0.2;        // width against height changes by up to this share
-  double mosaic = 0.3;        // chance
-  double plain_share = 0.15;  // of the training, at its end, without mosaics
+  double mosaic = 0.4;        // chance
+  double plain_share = 0.15;  // of the training, at its end, without mosaics and with whole pictures
   double hue_deg = 12.0;
   double saturation = 0.5, exposure = 0.5;
   double blur = 0.15, noise = 0.3;  // chances
@@ -34,12 +34,12 @@ struct TrainConfig {
   int batch = 8;
   double learning_rate = 0.003, final_rate = 0.02;
   int warm_up = 200;  // steps
-  double weight_decay = 0.02;
-  double average_decay = 0.998;
+  double weight_decay = 0.05;
+  double average_decay = 0.999;
   double largest_gradient = 10.0;
   double box_weight = 5.0, object_weight = 1.0, class_weight = 1.0;
-  double anchor_iou = 0.5, ignore_iou = 0.7;
-  double cache_mb = 2000.0, cache_scale = 1.25;
+  double anchor_iou = 0.5, ignore_iou = 0.5;
+  double cache_mb = 4000.0, cache_scale = 1.5;
   AugmentConfig augment;
 
   void visit(Fields& f);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <opencv2/core/utility.hpp>
 #include <sstream>
@@ -21,6 +22,7 @@
 #include "harness/train/network.h"
 #include "harness/train/optimiser.h"
 #include "harness/train/region_loss.h"
+#include "mapper/detect/resized_picture.h"
 
 namespace waretwin::train {
 namespace {
@@ -30,7 +32,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kUsualPictures = 54000.0;  // shown in a training whose length nobody says: about 20 minutes on two cores
 constexpr int kLeastEpochs = 12;
-constexpr int kIouSteps = 10;                           // of COCO's AP: 0.5, 0.55, ... 0.95
+constexpr int kIouSteps = 10;       // of COCO's AP: 0.5, 0.55, ... 0.95
+constexpr double kLateShare = 0.3;  // of the training, at its end: the best of these epochs is kept
+constexpr std::size_t kStatisticsPictures = 240;
 constexpr float kLeastScore = 0.005f, kNmsIou = 0.45f;  // of validation
 constexpr std::int64_t kMegabyte = 1'000'000;
 
@@ -63,7 +67,7 @@ std::string config_text(TrainConfig config) {
 }
 
 // What must be the same for a training to go on: all but how long it takes.
-std::string lasting_text(const TrainConfig& config, const LabelledSet& set) {
+std::string lasting_text(const TrainConfig& config, const LabelledSet& set, const LabelledSet& valid) {
   TrainConfig lasting = config;
   lasting.epochs = lasting.patience = 0;
   lasting.minutes = lasting.cache_mb = 0.0;
@@ -71,11 +75,14 @@ std::string lasting_text(const TrainConfig& config, const LabelledSet& set) {
   for (const std::string& name : set.classes) text += " " + name;
   // Boxes make the anchors, which the weights are learned for.
   Digest boxes;
-  for (const LabelledImage& image : set.images) {
-    boxes.add(image.name);
-    for (const LabelledBox& box : image.boxes) {
-      boxes.add(box.class_index);
-      for (const double value : {box.share.x, box.share.y, box.share.width, box.share.height}) boxes.add(value);
+  for (const LabelledSet* part : {&set, &valid}) {
+    for (const LabelledImage& image : part->images) {
+      boxes.add(image.name);
+      for (const LabelledBox& box : image.boxes) {
+        boxes.add(box.class_index);
+        boxes.add(static_cast<int>(box.ignored));
+        for (const double value : {box.share.x, box.share.y, box.share.width, box.share.height}) boxes.add(value);
+      }
     }
   }
   return text + "\nlabels: " + boxes.hex() + "\n";
@@ -177,7 +184,7 @@ class Training {
   }
 
   void load() {
-    state_.config = lasting_text(config_, train_);
+    state_.config = lasting_text(config_, train_, valid_);
     state_.log = "epoch,box_loss,object_loss,class_loss,ap,ap50,ap75,side_error_px,learning_rate,seconds\n";
     for (const std::vector<at::Tensor>& tensors :
          {network_.learned(), network_.followed(), average_.learned(), average_.followed(), optimiser_.state()}) {
@@ -217,19 +224,9 @@ class Training {
     training_ = true;
     EpochResult result;
     result.epoch = static_cast<int>(state_.epochs_done) + 1;
-    const bool mosaic = share_done(static_cast<double>(state_.steps)) < 1.0 - config_.augment.plain_share;
-    EpochLoader loader(train_pictures_, config_, static_cast<int>(state_.epochs_done), mosaic);
-    int steps = 0;
-    while (const auto batch = loader.next()) {
-      if (hooks_.check) hooks_.check();
-      const double share = share_done(static_cast<double>(state_.steps));
-      if (share >= 1.0 && steps > 0) break;
-      result.rate = rate_at(share);
-      step(*batch, result);
-      ++steps;
-      report(result.epoch, steps, share);
-    }
+    const int steps = train_once(result);
     for (double* const loss : {&result.box_loss, &result.object_loss, &result.class_loss}) *loss /= steps;
+    renew_statistics();
     validate(result);
     training_ = false;
     result.seconds = seconds_since(epoch_start_);
@@ -241,6 +238,40 @@ class Training {
                   result.class_loss, result.ap, result.ap50, result.ap75, result.side_error_px, result.rate, result.seconds);
     state_.log += line;
     if (hooks_.epoch) hooks_.epoch(result);
+  }
+
+  // Once through the pictures; how many steps that took.
+  int train_once(EpochResult& result) {
+    const bool late = share_done(static_cast<double>(state_.steps)) >= 1.0 - config_.augment.plain_share;
+    EpochLoader loader(train_pictures_, config_, static_cast<int>(state_.epochs_done), late);
+    int steps = 0;
+    while (const auto batch = loader.next()) {
+      if (hooks_.check) hooks_.check();
+      const double share = share_done(static_cast<double>(state_.steps));
+      if (share >= 1.0 && steps > 0) break;
+      result.rate = rate_at(share);
+      step(*batch, result);
+      ++steps;
+      report(result.epoch, steps, share);
+    }
+    return steps;
+  }
+
+  // Means and variances that belong to the averaged weights, from pictures as a detector sees them.
+  void renew_statistics() {
+    const std::size_t count = train_pictures_.count(), shown = std::min(count, kStatisticsPictures);
+    const auto batch_size = static_cast<std::size_t>(config_.batch);
+    int index = 0;
+    for (std::size_t first = 0; first < shown; first += batch_size) {
+      if (hooks_.check) hooks_.check();
+      std::vector<Sample> batch;
+      for (std::size_t i = first; i < std::min(shown, first + batch_size); ++i) {
+        Sample& sample = batch.emplace_back();
+        sample.picture.create(config_.height, config_.width, CV_8UC3);
+        resize_picture(train_pictures_.get(i * count / shown).picture, sample.picture);
+      }
+      average_.renew_statistics(as_tensor(batch), index++);
+    }
   }
 
   void step(const std::vector<Sample>& batch, EpochResult& result) {
@@ -294,19 +325,24 @@ class Training {
       if (step == 0) result.ap50 = ap;
       if (step == kIouSteps / 2) result.ap75 = ap;
     }
+    balanced_score_ = balanced_score(found, truth, classes, 0.5f);
     // Pictures are taken for 16:9, as those of the camera that the figure is about.
     result.side_error_px = median_side_error(found, truth, 1280, 720);
     validation_seconds_ = seconds_since(start);
   }
 
-  // By the AP over all IoU: with few pictures to validate on, AP50 alone jumps up and down by a tenth.
+  // By the AP over all IoU, and among the late epochs: with few pictures to validate on, AP50 jumps up and down by a tenth, and the best of
+  // many such numbers says little.
   void keep_if_best(EpochResult& result) {
-    if (state_.best_epoch >= 0 && result.ap <= state_.best_fitness) return;
+    const bool late = share_done(static_cast<double>(state_.steps)) >= 1.0 - kLateShare, first_late = late && state_.best_is_late == 0;
+    if (state_.best_epoch >= 0 && !first_late && result.ap < state_.best_fitness) return;
     result.best = true;
+    state_.best_is_late = late ? 1 : 0;
     state_.best_fitness = result.ap;
     state_.best_ap50 = result.ap50;
     state_.best_epoch = state_.epochs_done;
-    state_.best_weights = darknet_weights(average_, state_.steps * config_.batch);
+    // A detector keeps what scores 0.5 unless told otherwise.
+    state_.best_weights = darknet_weights(average_, state_.steps * config_.batch, -std::log(balanced_score_ / (1.0 - balanced_score_)));
   }
 
   TrainingSummary write_model() const {
@@ -334,6 +370,7 @@ class Training {
   Clock::time_point epoch_start_;
   bool training_ = false;
   double validation_seconds_ = 0.0;
+  double balanced_score_ = 0.5;  // of the last validation
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "mapper/detect/darknet_cfg.h"
 #include "mapper/detect/model_files.h"
+#include "mapper/detect/resized_picture.h"
 #include "mapper/detect/yolo_decode.h"
 
 namespace waretwin {
@@ -67,7 +68,8 @@ struct YoloDetector::Network {
     cv::Mat placed;
     if (!letterbox) {
       placement = {static_cast<double>(input.width) / colour.cols, static_cast<double>(input.height) / colour.rows, 0.0, 0.0};
-      cv::resize(colour, placed, input, 0, 0, cv::INTER_LINEAR);
+      placed.create(input, CV_8UC3);
+      resize_picture(colour, placed);
       return placed;
     }
     const double scale = std::min(static_cast<double>(input.width) / colour.cols, static_cast<double>(input.height) / colour.rows);
@@ -78,7 +80,7 @@ struct YoloDetector::Network {
                  static_cast<double>(corner.x), static_cast<double>(corner.y)};
     placed = cv::Mat(input, CV_8UC3, cv::Scalar::all(kLetterboxGrey));
     cv::Mat window = placed(cv::Rect(corner, size));
-    cv::resize(colour, window, size, 0, 0, cv::INTER_LINEAR);
+    resize_picture(colour, window);
     return placed;
   }
 };

@@ -23,6 +23,16 @@ TEST(AveragePrecision, ClassesAreAveragedAndIgnoredBoxesDoNotCount) {
   EXPECT_NEAR(average_precision({{{0, kLeft, 0.9f}, {1, kRight, 0.5f}}}, truth, 3, 0.5f), 1.0, 1e-9);
 }
 
+TEST(AveragePrecision, BalanceOfPrecisionAndRecallByHand) {
+  // Right at 0.8 and 0.4, wrong at 0.2: two objects are best served by all that scores 0.4 or more.
+  const std::vector<std::vector<TruthBox>> truth = {{{0, kLeft, false}, {0, kRight, false}}};
+  EXPECT_NEAR(balanced_score({{{0, kLeft, 0.8f}, {0, kRight, 0.4f}, {0, kNowhere, 0.2f}}}, truth, 1, 0.5f), 0.4, 1e-6);
+  // A wrong one before the second: F1 is 2/3 with the first alone, 4/5 with all three.
+  EXPECT_NEAR(balanced_score({{{0, kLeft, 0.9f}, {0, kNowhere, 0.8f}, {0, kRight, 0.4f}}}, truth, 1, 0.5f), 0.4, 1e-6);
+  EXPECT_EQ(balanced_score({{}}, truth, 1, 0.5f), 0.5);
+  EXPECT_EQ(balanced_score({{{0, kNowhere, 0.9f}}}, truth, 1, 0.5f), 0.5);
+}
+
 TEST(AveragePrecision, SidesByHand) {
   // 0.01 of 1280 px at the left and right, nothing above and below.
   const cv::Rect2f moved(kLeft.x + 0.01f, kLeft.y, kLeft.width, kLeft.height);

@@ -76,8 +76,8 @@ TEST_F(Training, AResumedOneEndsLikeAnUninterruptedOne) {
   // Stopped in the middle of the second epoch, then once more right after it.
   int steps = 0;
   TrainingHooks stopping;
-  stopping.check = [&] {
-    if (++steps == 7) throw Stopped();
+  stopping.progress = [&](const TrainingProgress& now) {
+    if (now.epoch == 2 && ++steps == 2) throw Stopped();
   };
   EXPECT_THROW(train_detector(parts, stopping), Stopped);
   EXPECT_FALSE(fs::exists(parts.out / "shapes.weights"));
