@@ -9,7 +9,7 @@
 #include "core/version.h"
 #include "harness/dataset/coco_file.h"
 #include "harness/dataset/contact_sheet.h"
-#include "harness/pictures/png_file.h"
+#include "harness/pictures/picture_file.h"
 
 namespace waretwin {
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <deque>
 #include <future>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 
 #include "core/checksum.h"
@@ -14,6 +13,7 @@
 #include "core/parallel.h"
 #include "harness/dataset/dataset_index.h"
 #include "harness/dataset/hall_photographer.h"
+#include "harness/pictures/picture_file.h"
 #include "harness/run/run_config.h"
 #include "sensors/measurements.h"
 
@@ -115,15 +115,9 @@ ImageRecord write_photograph(const Photograph& photograph, const fs::path& folde
     write_file(folder / name, bytes);
     record.files[name] = sha256(bytes);
   };
-  const auto write_image = [&](const std::string& name, const cv::Mat& image, const std::vector<int>& parameters) {
-    std::vector<unsigned char> bytes;
-    if (!cv::imencode(fs::path(name).extension().string(), image, bytes, parameters))
-      throw InternalError("a picture could not be encoded: " + name);
-    write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  };
-  write_image("images/" + record.name + ".jpg", photograph.colour, {cv::IMWRITE_JPEG_QUALITY, config.jpeg_quality});
-  if (config.depth) write_image("depth/" + record.name + ".png", depth_to_millimetres(photograph.depth), {});
-  if (config.instances) write_image("instances/" + record.name + ".png", photograph.instances, {});
+  write("images/" + record.name + ".jpg", encoded_jpeg(photograph.colour, config.jpeg_quality));
+  if (config.depth) write("depth/" + record.name + ".png", encoded(depth_to_millimetres(photograph.depth), ".png"));
+  if (config.instances) write("instances/" + record.name + ".png", encoded(photograph.instances, ".png"));
   if (formats.yolo) {
     write("labels/" + record.name + ".txt", darknet_lines(record.labels.labels, record.intrinsics));
     // Darknet has no word for it; `waretwin train` and `detect` read these as neither objects nor background.

@@ -4,9 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
-#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -15,6 +13,7 @@
 #include "core/statistics.h"
 #include "harness/detect/detection_drawing.h"
 #include "harness/detect/set_scorer.h"
+#include "harness/pictures/picture_file.h"
 #include "mapper/detect/yolo_detector.h"
 #include "sensors/recordings/recorded_image.h"
 
@@ -23,6 +22,8 @@ namespace waretwin {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kDrawnQuality = 90;  // of JPEG
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
@@ -42,14 +43,6 @@ std::string picture_json(const std::string& name, const cv::Size& size, const st
   }
   // Names of files come in whatever encoding.
   return entry.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-void write_jpeg(const fs::path& file, const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 90})) {
-    throw InternalError("a picture could not be encoded: " + file.string());
-  }
-  write_file(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 // Names for drawn pictures: the picture's own stem, numbered where two have the same.
@@ -116,7 +109,7 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
       std::string drawn_name;
       if (drawn) {
         drawn_name = drawn_names.next(image.file);
-        write_jpeg(drawn->path() / drawn_name, draw_detections(colour, detections, truth, set.classes));
+        write_file(drawn->path() / drawn_name, encoded_jpeg(draw_detections(colour, detections, truth, set.classes), kDrawnQuality));
       }
       file.append((result.pictures == 0 ? "\n" : ",\n") + picture_json(image.name, colour.size(), drawn_name, detections));
       for (const Detection& d : detections) {

@@ -12,7 +12,7 @@
 #include "core/pose.h"
 #include "core/staged_folder.h"
 #include "harness/generate/plan_picture.h"
-#include "harness/pictures/png_file.h"
+#include "harness/pictures/picture_file.h"
 #include "scenes/generate/generator.h"
 #include "scenes/generate/hall_files.h"
 #include "sim/ray_caster.h"

@@ -1,18 +1,20 @@
-#include "harness/pictures/png_file.h"
+#include "harness/pictures/picture_file.h"
 
 #include <opencv2/imgcodecs.hpp>
-#include <string_view>
-#include <vector>
 
 #include "core/error.h"
 #include "core/files.h"
 
 namespace waretwin {
 
-void write_png(const std::filesystem::path& file, const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", image, png)) throw InternalError("a picture could not be encoded: " + file.string());
-  write_file(file, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+std::string encoded(const cv::Mat& image, const std::string& ending, const std::vector<int>& parameters) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(ending, image, bytes, parameters)) throw InternalError("a picture could not be encoded as " + ending);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
+
+std::string encoded_jpeg(const cv::Mat& image, int quality) { return encoded(image, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality}); }
+
+void write_png(const std::filesystem::path& file, const cv::Mat& image) { write_file(file, encoded(image, ".png")); }
 
 }  // namespace waretwin

@@ -1,4 +1,6 @@
 // waretwin dataset: labelled training pictures.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
@@ -80,6 +82,9 @@ int dataset(const DatasetOptions& options) {
   for (const std::string& file : options.scenarios) sources.push_back(scenario_source(file, of_scenarios));
   for (const std::string& style : options.styles) sources.push_back(generated_source(style, config.seed, of_scenarios));
   if (sources.empty()) throw Error("no halls; expected scenario files or --generate STYLE");
+  if (options.scenarios.size() == sources.size() && config.valid_share + config.test_share > 0.0) {
+    spdlog::info("all splits show the same layouts: AP on them says little of other halls (--generate draws a new hall each time)");
+  }
 
   DatasetSummary summary;
   {

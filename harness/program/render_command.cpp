@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "harness/pictures/png_file.h"
+#include "harness/pictures/picture_file.h"
 #include "harness/program/common_options.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/scenario.h"

@@ -1,11 +1,11 @@
 #include "harness/run/report.h"
 
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
 #include "core/version.h"
+#include "harness/pictures/picture_file.h"
 
 namespace waretwin {
 
@@ -34,14 +34,14 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-std::string base64(const std::vector<unsigned char>& bytes) {
+std::string base64(const std::string& bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
+  const auto byte = [&bytes](std::size_t i) { return i < bytes.size() ? unsigned{static_cast<unsigned char>(bytes[i])} : 0U; };
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t left = bytes.size() - i;
-    const unsigned word = static_cast<unsigned>(bytes[i]) << 16 | (left > 1 ? static_cast<unsigned>(bytes[i + 1]) << 8 : 0U) |
-                          (left > 2 ? static_cast<unsigned>(bytes[i + 2]) : 0U);
+    const unsigned word = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
     text += kDigits[word >> 18 & 63];
     text += kDigits[word >> 12 & 63];
     text += left > 1 ? kDigits[word >> 6 & 63] : '=';
@@ -126,13 +126,13 @@ std::string timing_table(const std::map<std::string, TimingSummary>& timing) {
   return text + "</table>\n";
 }
 
+constexpr int kPictureQuality = 85;  // of JPEG
+
 std::string figure(const ReportPicture& picture) {
   cv::Mat image = picture.image;
   if (image.cols > 1100) cv::resize(image, image, {}, 1100.0 / image.cols, 1100.0 / image.cols, cv::INTER_AREA);
-  std::vector<unsigned char> jpeg;
-  if (!cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 85})) throw InternalError("a picture could not be encoded");
-  return "<figure><img alt=\"" + escaped(picture.caption) + "\" src=\"data:image/jpeg;base64," + base64(jpeg) + "\"><figcaption>" +
-         escaped(picture.caption) + "</figcaption></figure>\n";
+  return "<figure><img alt=\"" + escaped(picture.caption) + "\" src=\"data:image/jpeg;base64," +
+         base64(encoded_jpeg(image, kPictureQuality)) + "\"><figcaption>" + escaped(picture.caption) + "</figcaption></figure>\n";
 }
 
 constexpr const char* kStyle =

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "harness/pictures/png_file.h"
+#include "harness/pictures/picture_file.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
