@@ -8,7 +8,7 @@ namespace waretwin {
 
 namespace {
 
-// Light hardly changes from pixel to pixel of one smooth surface unless its depth does.
+// Light hardly changes from pixel to pixel of one triangle, or of one smooth surface, unless its depth does.
 constexpr float kDepthStep = 0.02f;
 constexpr float kSameNormal = 0.9998f;  // cosine
 
@@ -180,12 +180,12 @@ void TileShader::write_surface(int x, int y, const Hit& hit, const Look& look, c
 void TileShader::cast_shadows() {
   // Rays to one light travel together.
   std::array<std::uint8_t, PixelTile::kPixels> order;
-  std::vector<std::uint8_t> place(lights_.count() + 1, 0);
+  place_.assign(lights_.count() + 1, 0);
   const auto shadows = std::span(rays_).first(ray_count_);
-  for (const Shadow& shadow : shadows) ++place[static_cast<std::size_t>(shadow.light) + 1];
-  for (std::size_t light = 1; light < place.size(); ++light) place[light] = static_cast<std::uint8_t>(place[light] + place[light - 1]);
+  for (const Shadow& shadow : shadows) ++place_[static_cast<std::size_t>(shadow.light) + 1];
+  for (std::size_t light = 1; light < place_.size(); ++light) place_[light] = static_cast<std::uint8_t>(place_[light] + place_[light - 1]);
   for (std::size_t i = 0; i < shadows.size(); ++i)
-    order[place[static_cast<std::size_t>(shadows[i].light)]++] = static_cast<std::uint8_t>(i);
+    order[place_[static_cast<std::size_t>(shadows[i].light)]++] = static_cast<std::uint8_t>(i);
   std::array<Ray, PixelTile::kPixels> rays_by_light;
   std::array<std::uint8_t, PixelTile::kPixels> blocked;
   for (std::size_t i = 0; i < shadows.size(); ++i) rays_by_light[i] = shadows[order[i]].ray;

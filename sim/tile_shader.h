@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "sim/direct_light.h"
 #include "sim/lit_picture.h"
@@ -13,7 +14,7 @@
 
 namespace waretwin {
 
-// One for each thread; all write to the same picture, each its own tiles.
+// For one thread; several write to the same picture, each its own tiles.
 class TileShader {
  public:
   // Without `shadows` every light is seen. `spread`: angle of a pixel, radians. `seed`: of the rays towards the lights.
@@ -51,7 +52,8 @@ class TileShader {
   float spread_;
   SpreadPoints points_;
   LitPicture& picture_;
-  LightParts parts_;  // of the last look
+  LightParts parts_;                 // of the last look
+  std::vector<std::uint8_t> place_;  // of each light's rays among all
   std::array<Shadow, PixelTile::kPixels> rays_;
   std::size_t ray_count_ = 0;
 };
