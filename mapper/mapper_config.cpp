@@ -25,13 +25,21 @@ MapperConfig MapperConfig::make(const std::string& profile) {
 void MapperConfig::visit(Fields& f) {
   const std::string before = profile;
   f("profile", profile, "the method whose constants the other keys start from", {.choices = {"paper", "best"}});
-  if (profile != before) *this = make(profile);
+  if (profile != before) {
+    MapperConfig other = make(profile);
+    other.poses = poses;
+    other.detector = detector;
+    other.model = model;
+    other.boxes = boxes;
+    *this = std::move(other);
+  }
   f("rate_hz", rate_hz, "frames mapped a second, those in between are dropped; 0 = every frame", {.min = 0, .max = 1000});
   f("poses", poses, "where the vehicle's poses come from; auto: laser, else recorded, else odometry",
     {.choices = {"auto", "laser", "odometry", "recorded"}});
   f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere",
     {.choices = {"yolo", "boxes", "none"}});
-  f("model", model, "detector: a folder, a .cfg, .weights or .onnx file, or the name of a shipped model");
+  f("model", model,
+    "detector: a folder, a .cfg, .weights or .onnx file, or the name of a shipped model; empty: the shipped model conveyor");
   f("boxes", boxes, "JSON file with boxes by frame stamp");
   f("objects", objects, "how objects come about: accumulated points, as published, or the evidence of all rays",
     {.choices = {"points", "evidence"}});

@@ -19,7 +19,7 @@ struct MapperConfig {
   double rate_hz = 0.0;            // frames mapped a second, those in between are dropped; 0 = every frame
   std::string poses = "auto";      // where X_WB comes from; auto: laser where the stream has scans, else recorded, else odometry
   std::string detector = "none";   // yolo: the network in `model`; boxes: the file in `boxes`; none: no objects
-  std::string model;               // folder, .cfg, .weights or .onnx file
+  std::string model;               // folder, .cfg, .weights or .onnx file, or a shipped model's name; empty: see model_or_shipped()
   std::string boxes;               // JSON file with boxes by frame stamp
   std::string objects = "points";  // how objects come about: "points" as published, "evidence" of all rays
   double label_margin_m = -1.0;    // pixels farther outside their object's cuboid get no label; below 0: all get it
@@ -33,7 +33,7 @@ struct MapperConfig {
 
   // The constants of a profile: paper or best. Throws Error naming the known ones.
   static MapperConfig make(const std::string& profile);
-  // A `profile` that changes sets all other fields before those that follow it.
+  // A `profile` that changes sets all other fields before those that follow it, but for where poses and boxes come from.
   void visit(Fields& f);
 };
 

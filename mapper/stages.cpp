@@ -6,6 +6,7 @@
 #include "mapper/associate/evidence_associator.h"
 #include "mapper/associate/paper_associator.h"
 #include "mapper/detect/boxes_detector.h"
+#include "mapper/detect/shipped_models.h"
 #include "mapper/detect/yolo_detector.h"
 #include "mapper/integrate/grouped_ray_integrator.h"
 #include "mapper/integrate/projective_integrator.h"
@@ -43,9 +44,7 @@ std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const Stre
 
 std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   if (config.detector == "yolo") {
-    if (config.model.empty())
-      throw Error("mapper.model: no detector model; expected a folder, a .cfg, .weights or .onnx file, or a shipped model's name");
-    return std::make_unique<YoloDetector>(config.model, config.detect);
+    return std::make_unique<YoloDetector>(model_or_shipped(config.model), config.detect);
   }
   if (config.detector == "boxes") {
     if (config.boxes.empty()) throw Error("mapper.boxes: no file; expected a JSON file with boxes by frame stamp");

@@ -31,7 +31,8 @@ void write_lists(const fs::path& folder, const std::map<std::string, std::string
   for (const std::string& split : kSplits) {
     const auto list = lists.find(split);
     write(split + ".txt", list == lists.end() ? "" : list->second);
-    data += split + " = " + split + ".txt\n";
+    // Readers of a set would trip over a split without pictures.
+    if (list != lists.end()) data += split + " = " + split + ".txt\n";
   }
   std::string names;
   for (const std::string& name : classes) names += name + "\n";

@@ -83,7 +83,7 @@ int dataset(const DatasetOptions& options) {
   for (const std::string& style : options.styles) sources.push_back(generated_source(style, config.seed, of_scenarios));
   if (sources.empty()) throw Error("no halls; expected scenario files or --generate STYLE");
   if (options.scenarios.size() == sources.size() && config.valid_share + config.test_share > 0.0) {
-    spdlog::info("all splits show the same layouts: AP on them says little of other halls (--generate draws a new hall each time)");
+    spdlog::info("all splits show the same layouts: AP on them says little of other halls");
   }
 
   DatasetSummary summary;

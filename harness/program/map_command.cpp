@@ -84,9 +84,9 @@ Command add_map_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout, CARMEN laser log)");
   command->add_option("RECORDING", options->recording, "folder of a recording, or a CARMEN log (.log, .log.gz)")->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
-  options->mapping.add_to(
-      *command,
-      "none (default: no objects); a model's folder, file or shipped name; yolo with --set mapper.model=FILE; a JSON file with boxes");
+  options->mapping.add_to(*command,
+                          "none (default: no objects); yolo: the shipped model conveyor, or that of --set mapper.model=MODEL; a model's "
+                          "folder, file or shipped name; a JSON file with boxes");
   command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
       ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
   command->get_option("--config")->excludes("--poses");

@@ -2,9 +2,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
@@ -14,6 +19,8 @@
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/number_text.h"
+#include "mapper/detect/shipped_models.h"
+#include "mapper/detect/yolo_detector.h"
 
 namespace waretwin {
 
@@ -30,7 +37,8 @@ struct RunOptions {
 RunConfig configure(const RunOptions& options) {
   RunConfig config;
   config.mapper = options.mapping.mapper_config();
-  config.truth_stages.detector = !options.mapping.detector || *options.mapping.detector == "truth";
+  if (!options.mapping.detector) config.mapper.detector = RunConfig().mapper.detector;
+  config.truth_stages.detector = options.mapping.detector == "truth";
   config.truth_stages.poses = options.poses == "truth";
   if (!options.poses.empty() && options.poses != "truth") config.mapper.poses = options.poses;
   config.truth_stages.association = options.association == "truth";
@@ -53,6 +61,25 @@ void print_summary(const char* name, const ScoreSummary& s) {
             << number("%.2f deg", s.mean_e_rot_deg) << "\n";
 }
 
+// Objects that the model does not know: the map will be without them, and nobody would see why.
+void warn_of_strange_classes(const RunConfig& config, const Scene& scene) {
+  if (config.truth_stages.detector || config.mapper.detector != "yolo" || scene.objects.empty()) return;
+  const std::filesystem::path model = model_or_shipped(config.mapper.model);
+  const std::vector<std::string> known = YoloDetector(model, config.mapper.detect).class_names();
+  const auto list = [](const auto& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+  };
+  std::set<std::string> strange;
+  for (const TrueObject& object : scene.objects) {
+    if (std::find(known.begin(), known.end(), object.class_name) == known.end()) strange.insert(object.class_name);
+  }
+  if (strange.empty()) return;
+  spdlog::warn("the detector's model {} does not know {}, which the hall has: it will find none (it knows {})", model.string(),
+               list(strange), list(known));
+}
+
 int run(const RunOptions& options) {
   options.common.apply();
   const RunConfig config = configure(options);
@@ -69,9 +96,7 @@ int run(const RunOptions& options) {
     RunConfig resolved = config;
     folder->write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
   };
-  if (!options.mapping.detector && options.mapping.config_file.empty() && config.truth_stages.detector) {
-    spdlog::info("boxes come from the truth: no detector model was named (--detector)");
-  }
+  warn_of_strange_classes(config, *scene);
   ClosedLoopResult result;
   {
     Progress progress("run", options.common.quiet);
@@ -106,9 +131,10 @@ Command add_run_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("run", "closed loop: simulates a drive through a hall, maps it and scores the map");
   command->add_option("SCENARIO", options->scenario, "scenario file")->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
-  options->mapping.add_to(*command,
-                          "truth: true boxes (the default until a model is shipped); none; yolo with --set mapper.model=FILE; a model's "
-                          "folder, file or shipped name; a JSON file with boxes");
+  options->mapping.add_to(
+      *command,
+      "yolo: the shipped model conveyor, or that of --set mapper.model=MODEL (default); a model's folder, file or shipped name; "
+      "truth: true boxes; none; a JSON file with boxes");
   command->add_option("--poses", options->poses, "laser (default), odometry or truth")
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));

@@ -19,13 +19,15 @@ namespace waretwin {
 
 // Stages of the mapper that the truth stands in for. True depth is simulation.truth_depth.
 struct TruthStages {
-  bool detector = true;
+  bool detector = false;
   bool poses = false;
   bool association = false;
   void visit(Fields& f);
 };
 
 struct RunConfig {
+  RunConfig() { mapper.detector = "yolo"; }  // unless told otherwise no truth is in the loop
+
   Scenario scenario;
   MapperConfig mapper;
   SimulationConfig simulation;

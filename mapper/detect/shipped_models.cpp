@@ -60,4 +60,6 @@ fs::path shipped_model(const std::string& name) {
               (known.empty() ? "the shipped ones (there are none in " + shipped_models_folder().string() + ")" : known));
 }
 
+fs::path model_or_shipped(const std::string& model) { return model.empty() ? shipped_model(kUsualModel) : fs::path(model); }
+
 }  // namespace waretwin

@@ -23,4 +23,9 @@ bool is_shipped_model(const std::filesystem::path& model);
 // The model's folder. Throws Error listing the known ones.
 std::filesystem::path shipped_model(const std::string& name);
 
+// Which one it is where none is named.
+inline constexpr const char* kUsualModel = "conveyor";
+// `model` as it is or, if empty, the usual one's folder, whatever lies in the present folder. Throws Error where it is not there.
+std::filesystem::path model_or_shipped(const std::string& model);
+
 }  // namespace waretwin

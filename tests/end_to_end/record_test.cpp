@@ -63,6 +63,18 @@ TEST(Record, MappedGivesTheDigestOfARun) {
     EXPECT_EQ(digest_in(run.out), digest_in(map.out));
     EXPECT_EQ(digest_in(map.out).find_first_not_of("0123456789abcdef"), std::string::npos) << map.out;
   }
+  {
+    // Unless told otherwise, boxes come from the shipped model.
+    const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "yolo_run") + " " + options);
+    const auto map =
+        test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "yolo_map") + " --detector yolo");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(map.exit_code, 0) << map.err;
+    EXPECT_EQ(digest_in(run.out), digest_in(map.out));
+    const Json score = Json::parse(read_file(folder.path() / "yolo_run/score.json"));
+    EXPECT_EQ(score["stages"]["detector"], "yolo");
+    EXPECT_GT(score["detection"]["tp"].get<int>(), 0) << "the drive's eight pictures show conveyors";
+  }
   // With boxes and with fewer frames than there are.
   const std::string mapping = "--profile paper --frames 6 --detector " + in_quotes(boxes);
   const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "run") +

@@ -39,6 +39,13 @@ TEST_F(ShippedModels, AreFoundByName) {
   EXPECT_ERROR(find_model_files("palet", {}), "'palet'", "conveyor-v1.2, pallet");
 }
 
+TEST_F(ShippedModels, WhereNoneIsNamedItIsTheUsualOne) {
+  EXPECT_EQ(model_or_shipped("some/model.onnx"), "some/model.onnx");
+  EXPECT_ERROR(model_or_shipped(""), "'conveyor'");
+  write_model("conveyor");
+  EXPECT_EQ(model_or_shipped(""), folder_.path() / "conveyor");
+}
+
 TEST_F(ShippedModels, PathsAreNoNames) {
   for (const char* path : {"a/pallet", "./pallet", "pallet/", "pallet.onnx", "pallet.cfg", "pallet.weights", ".", "..", ""}) {
     EXPECT_FALSE(may_be_shipped_model(path)) << path;

@@ -21,6 +21,18 @@ TEST(MapperConfig, PaperHasThePapersConstants) {
   EXPECT_EQ(paper.integrate.voxel_m, 0.02);         // section 4.2
 }
 
+TEST(MapperConfig, AProfileLeavesWhereBoxesAndPosesComeFrom) {
+  MapperConfig config = MapperConfig::make("best");
+  config.detector = "yolo";
+  config.model = "mine";
+  config.poses = "odometry";
+  apply_settings({{"profile", "paper"}}, [&](Fields& f) { config.visit(f); });
+  EXPECT_EQ(config.objects, MapperConfig::make("paper").objects);
+  EXPECT_EQ(config.detector, "yolo");
+  EXPECT_EQ(config.model, "mine");
+  EXPECT_EQ(config.poses, "odometry");
+}
+
 TEST(MapperConfig, AProfileSetsAllThatDoesNotFollowIt) {
   MapperConfig config = MapperConfig::make("paper");
   apply_settings({{"profile", "best"}, {"rate_hz", "5"}}, [&](Fields& f) { config.visit(f); });
