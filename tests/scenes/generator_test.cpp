@@ -2,6 +2,7 @@
 #include "scenes/generate/generator.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -240,6 +241,23 @@ TEST(GeneratedFlats, AreBareAndSmall) {
 }
 
 // Footprints against points of a fine grid.
+TEST(PlannedConveyors, SurfaceOfACurveLiesOnIt) {
+  PlannedConveyor conveyor;
+  builder::CurveConveyor curve;
+  curve.belt = false;
+  conveyor.part = curve;
+  // What has been given back is filled with other numbers: whoever still reads it gets patches from anywhere.
+  mallopt(M_PERTURB, 0x5a);
+  const std::vector<SurfacePatch> patches = conveyor.surface();
+  mallopt(M_PERTURB, 0);
+  const Eigen::AlignedBox3d extent = extent_of(curve);
+  ASSERT_GT(patches.size(), 50u);
+  for (const SurfacePatch& patch : patches) {
+    EXPECT_LT(extent.exteriorDistance(patch.p_W), 0.03) << patch.p_W.transpose();
+    EXPECT_NEAR(patch.normal.norm(), 1.0, 1e-9);
+  }
+}
+
 TEST(Solids, GapsAndOverlapsAgreeWithPoints) {
   const RandomStream random(3, "test", "solids");
   int overlapping = 0;
