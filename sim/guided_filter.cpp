@@ -76,6 +76,7 @@ struct Pass {
 
   std::ptrdiff_t stride() const { return along_rows ? 1 : guide.width; }
   float when_none_is_known() const { return along_rows ? kUnknown : 1.0f; }
+  float weight(int k) const { return std::abs(k) == radius ? 0.5f : 1.0f; }
 
   // Mean over the neighbours from `low` to `high` steps away.
   void filter(std::size_t p, int low, int high) const {
@@ -92,8 +93,8 @@ struct Pass {
       if (in[q] < 0.0f) continue;
       dark = dark || in[q] < 1.0f;
       if (!alike(depth, tolerance, normal, guide.depth[q], guide.normal[q], std::abs(k))) continue;
-      sum += in[q];
-      count += 1.0f;
+      sum += weight(k) * in[q];
+      count += weight(k);
     }
     out[p] = !dark ? 1.0f : count > 0.0f ? sum / count : when_none_is_known();
   }
@@ -111,8 +112,9 @@ struct Pass {
       const Ints other = load<Ints>(&guide.normal[q]);
       const Ints dot = nx * components(other, 0) + ny * components(other, 8) + nz * components(other, 16);
       const Ints counts = (value >= 0.0f) & (step <= allowed) & (-step <= allowed) & ((normal == other) | (dot > kAlikeNormals));
-      sum += counts ? value : Floats{};
-      count += counts ? Floats{} + 1.0f : Floats{};
+      const Floats share = counts ? Floats{} + weight(k) : Floats{};
+      sum += share * value;
+      count += share;
     }
     const Floats mean = count > 0.0f ? sum / (count > 0.0f ? count : Floats{} + 1.0f) : Floats{} + when_none_is_known();
     const Floats result = depth == 0.0f ? own : (dark ? mean : Floats{} + 1.0f);

@@ -24,7 +24,8 @@ bool same_surface(const SurfaceGuide& guide, std::size_t p, std::size_t q, int s
 // A value that is still to be filled in.
 inline constexpr float kUnknown = -1.0f;
 
-// Mean over the known among 2 radius + 1 neighbours on the same surface, along rows first, then along columns. 1 where no neighbour on any
+// Mean over the known among 2 radius + 1 neighbours on the same surface, along rows first, then along columns. The outermost count half, so
+// that values known at every other pixel have the same weight wherever the window lies. 1 where no neighbour on any
 // surface is known to be below 1, and where none is known after both passes.
 // Values are >= 0 or kUnknown. `scratch` is kept by the caller.
 void smooth(const SurfaceGuide& guide, int radius, std::vector<float>& values, std::vector<float>& scratch);

@@ -22,6 +22,7 @@ namespace waretwin {
 namespace {
 
 constexpr int kShadowRadius = 4;  // of the smoothing, in pixels
+constexpr int kPathsAtOnce = 64;
 
 // Into whichever pictures were asked for.
 struct LightRow {
@@ -35,6 +36,16 @@ struct LightRow {
   cv::Vec3b* colour;
   cv::Vec4f* radiance;
 };
+
+// The s-th of a pixel's samples: anywhere in the pixel and, since each has a part of the exposure to itself, at its time.
+LightPath first_piece(const PixelRays& pixel_rays, int x, int y, int s, int samples, std::uint32_t seed) {
+  const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(pixel_rays.width()) + static_cast<std::uint32_t>(x);
+  PixelRandom random(seed, pixel * static_cast<std::uint32_t>(samples) + static_cast<std::uint32_t>(s));
+  const double dx = static_cast<double>(random.uniform()) - 0.5, dy = static_cast<double>(random.uniform()) - 0.5;
+  float moment = 0.5f;
+  if (pixel_rays.lasts()) moment = (static_cast<float>(s) + random.uniform()) / static_cast<float>(samples);
+  return {pixel_rays.at(x + dx, y + dy, moment), random};
+}
 
 }  // namespace
 
@@ -137,25 +148,30 @@ void Renderer::State::compose(FrameImages& images) const {
 }
 
 void Renderer::State::trace_paths(const PixelRays& pixel_rays, std::uint32_t seed, FrameImages& images) const {
-  const PathTracer tracer(*ray_caster, surfaces, lights, options.bounces);
   const auto exposure = static_cast<float>(options.exposure);
-  const int width = pixel_rays.width();
+  const int width = pixel_rays.width(), samples = options.samples;
+  // Paths of as many neighbouring pixels as fill some packets.
+  const int at_once = std::clamp(kPathsAtOnce / samples, 1, width);
   parallel_for(static_cast<std::size_t>(pixel_rays.height()), 2, [&](std::size_t begin, std::size_t end) {
-    LightParts parts;
+    PathTracer tracer(*ray_caster, surfaces, lights, options.bounces, pixel_rays.spread());
+    std::vector<LightPath> paths;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const LightRow out(images, y);
-      for (int x = 0; x < width; ++x) {
-        PixelRandom random(seed, static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) + static_cast<std::uint32_t>(x));
-        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-        for (int s = 0; s < options.samples; ++s) {
-          const double dx = static_cast<double>(random.uniform()) - 0.5, dy = static_cast<double>(random.uniform()) - 0.5;
-          // Each sample has a part of the exposure to itself.
-          float moment = 0.5f;
-          if (pixel_rays.lasts()) moment = (static_cast<float>(s) + random.uniform()) / static_cast<float>(options.samples);
-          sum += tracer.radiance(pixel_rays.at(x + dx, y + dy, moment), pixel_rays.spread(), random, parts);
+      for (int first = 0; first < width; first += at_once) {
+        const int last = std::min(first + at_once, width);
+        paths.clear();
+        for (int s = 0; s < samples; ++s) {
+          for (int x = first; x < last; ++x) paths.push_back(first_piece(pixel_rays, x, y, s, samples, seed));
         }
-        sum *= exposure / static_cast<float>(options.samples);
-        out.set(x, {sum.x(), sum.y(), sum.z(), 0.0f});
+        tracer.trace(paths);
+        for (int x = first; x < last; ++x) {
+          Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+          for (std::size_t i = static_cast<std::size_t>(x - first); i < paths.size(); i += static_cast<std::size_t>(last - first)) {
+            sum += paths[i].radiance;
+          }
+          sum *= exposure / static_cast<float>(samples);
+          out.set(x, {sum.x(), sum.y(), sum.z(), 0.0f});
+        }
       }
     }
   });

@@ -7,21 +7,9 @@
 
 namespace waretwin {
 
-// Pixels in Z-order: every aligned block of 2^n x 2^n pixels holds consecutive numbers.
-inline std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | v << 8) & 0x00ff00ffu;
-  v = (v | v << 4) & 0x0f0f0f0fu;
-  v = (v | v << 2) & 0x33333333u;
-  return (v | v << 1) & 0x55555555u;
-}
-inline std::uint32_t z_order(int x, int y) {
-  return spread_bits(static_cast<std::uint32_t>(x)) | spread_bits(static_cast<std::uint32_t>(y)) << 1;
-}
-
-// Well spread points for neighbouring pixels: the k-th point of a rank-1 sequence in three dimensions (M. Roberts, "The unreasonable
-// effectiveness of quasirandom sequences", 2018), dealt out along the Z-order, so that whatever a filter averages is nearly even (Ahmed
-// and Wonka, "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels", 2020). Each coordinate
-// in [0, 1).
+// Points whose every coordinate is spread evenly over [0, 1) among the neighbours of any pixel, so that what a filter averages has little
+// noise: each grows from column to column and from row to row by irrational steps (a rank-1 lattice over the picture; the first one's are
+// those of M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
 struct SpreadPoint {
   float a, b, c;
 };
@@ -31,9 +19,14 @@ class SpreadPoints {
     PixelRandom random(seed, 0);
     for (std::uint32_t& shift : shift_) shift = static_cast<std::uint32_t>(random.uniform() * 0x1p32f);
   }
-  SpreadPoint at(std::uint32_t k) const {
-    const auto unit = [](std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
-    return {unit(shift_[0] + k * 3518319155u), unit(shift_[1] + k * 2882110345u), unit(shift_[2] + k * 2360945575u)};
+  SpreadPoint at(int column, int row) const {
+    // Steps as shares of 2^32, at which the coordinates wrap around.
+    const auto unit = [i = static_cast<std::uint32_t>(column), j = static_cast<std::uint32_t>(row)](
+                          std::uint32_t shift, std::uint32_t across, std::uint32_t down) {
+      return static_cast<float>((shift + i * across + j * down) >> 8) * 0x1p-24f;
+    };
+    return {unit(shift_[0], 3242174889u, 2447445414u), unit(shift_[1], 1640531527u, 3144134278u),
+            unit(shift_[2], 1052792407u, 3668340012u)};
   }
 
  private:

@@ -65,15 +65,17 @@ Surfaces::Corners Surfaces::corners(const Mesh& mesh, const Hit& hit) const {
   return {{i[0], i[1], i[2]}, {1.0f - hit.u - hit.v, hit.u, hit.v}};
 }
 
-const Material& Surfaces::material(const Hit& hit) const {
+const Mesh& Surfaces::mesh(const Hit& hit) const {
   const Scene& scene = ray_caster_->scene();
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
-  return scene.materials[static_cast<std::size_t>(mesh.material)];
+  return scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+}
+
+const Material& Surfaces::material(const Hit& hit) const {
+  return ray_caster_->scene().materials[static_cast<std::size_t>(mesh(hit).material)];
 }
 
 Eigen::Vector2f Surfaces::uv(const Hit& hit, int set) const {
-  const Scene& scene = ray_caster_->scene();
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  const Mesh& mesh = this->mesh(hit);
   const auto& uv = mesh.uv[set];
   if (uv.empty()) return Eigen::Vector2f::Zero();
   const Corners c = corners(mesh, hit);
@@ -81,8 +83,7 @@ Eigen::Vector2f Surfaces::uv(const Hit& hit, int set) const {
 }
 
 Eigen::Vector3f Surfaces::face_normal(const Ray& ray, const Hit& hit) const {
-  const Scene& scene = ray_caster_->scene();
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
+  const Mesh& mesh = this->mesh(hit);
   const Eigen::Matrix3f linear = ray_caster_->transform(hit.instance).linear();
   const Corners c = corners(mesh, hit);
   const Eigen::Vector3f& a = mesh.positions[c.i[0]];
@@ -171,9 +172,7 @@ SurfacePoint Surfaces::at(const Ray& ray, const Hit& hit, float spread) const {
 }
 
 bool Surfaces::only_colour_varies(const Hit& hit) const {
-  const Scene& scene = ray_caster_->scene();
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[static_cast<std::size_t>(hit.instance)].mesh)];
-  return materials_[static_cast<std::size_t>(mesh.material)].only_colour_varies;
+  return materials_[static_cast<std::size_t>(mesh(hit).material)].only_colour_varies;
 }
 
 FaceColours Surfaces::face_colours(const Ray& ray, const Hit& hit, const SurfacePoint& point, float spread) const {

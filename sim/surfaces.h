@@ -89,6 +89,7 @@ class Surfaces {
     float size_M = 0.0f, per_metre = 0.0f;
   };
 
+  const Mesh& mesh(const Hit& hit) const;
   Place place(const Hit& hit) const;
   Footprint footprint(const Place& at, const Ray& ray, const Hit& hit, const Eigen::Vector3f& face_normal, float spread) const;
   static Eigen::Vector3f base_colour(const Place& at, const Footprint& footprint);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "sensors/tone_curve.h"
 
 namespace waretwin {
 
@@ -28,14 +27,13 @@ const std::array<float, 256>& decode_table() {
   return table;
 }
 
-std::array<float, 256> make_linear_table() {
-  std::array<float, 256> table{};
-  for (int i = 0; i < 256; ++i) table[static_cast<std::size_t>(i)] = static_cast<float>(i) / 255.0f;
-  return table;
-}
-
-const std::array<float, 256>& linear_table() {
-  static const std::array<float, 256> table = make_linear_table();
+// What each stored value is read as, 65535 = 1.
+std::array<std::uint16_t, 256> sixteen_bits(TextureSampler::Encoding encoding) {
+  std::array<std::uint16_t, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float value = encoding == TextureSampler::Encoding::kSrgb ? decode_table()[i] : static_cast<float>(i) / 255.0f;
+    table[i] = static_cast<std::uint16_t>(std::lround(65535.0f * value));
+  }
   return table;
 }
 
@@ -98,12 +96,15 @@ float sample_alpha(const Texture& texture, const Eigen::Vector2f& uv) {
 }
 
 TextureSampler::TextureSampler(const Texture& texture, Encoding encoding)
-    : wrap_u_(texture.wrap_u), wrap_v_(texture.wrap_v), nearest_(texture.nearest), encoding_(encoding) {
+    : wrap_u_(texture.wrap_u), wrap_v_(texture.wrap_v), nearest_(texture.nearest) {
   WARETWIN_CHECK(texture.width > 0 && texture.height > 0, "a texture has texels");
   WARETWIN_CHECK(texture.rgba.size() == std::size_t{4} * static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height),
                  "a texture has four bytes a texel");
   size_ = std::sqrt(static_cast<float>(texture.width) * static_cast<float>(texture.height));
-  levels_.push_back({texture.width, texture.height, texture.rgba});
+  const auto colour = sixteen_bits(encoding), alpha = sixteen_bits(Encoding::kLinear);
+  Level& full = levels_.emplace_back(Level{texture.width, texture.height, {}});
+  full.rgba.resize(texture.rgba.size());
+  for (std::size_t i = 0; i < full.rgba.size(); ++i) full.rgba[i] = (i % 4 == 3 ? alpha : colour)[texture.rgba[i]];
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     const Level finer = levels_.back();
     add_level(finer);
@@ -122,18 +123,10 @@ void TextureSampler::add_level(const Level& finer) {
   };
   for (int y = 0; y < level.height; ++y) {
     for (int x = 0; x < level.width; ++x) {
-      const std::uint8_t* in[4] = {texel(2 * x, 2 * y), texel(2 * x + 1, 2 * y), texel(2 * x, 2 * y + 1), texel(2 * x + 1, 2 * y + 1)};
-      std::uint8_t* out =
+      const std::uint16_t* in[4] = {texel(2 * x, 2 * y), texel(2 * x + 1, 2 * y), texel(2 * x, 2 * y + 1), texel(2 * x + 1, 2 * y + 1)};
+      std::uint16_t* out =
           &level.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x))];
-      for (int c = 0; c < 4; ++c) {
-        if (encoding_ == Encoding::kSrgb && c < 3) {
-          float sum = 0.0f;
-          for (const std::uint8_t* p : in) sum += decode_table()[p[c]];
-          out[c] = srgb_from_linear(0.25f * sum);
-        } else {
-          out[c] = static_cast<std::uint8_t>((in[0][c] + in[1][c] + in[2][c] + in[3][c] + 2) / 4);
-        }
-      }
+      for (int c = 0; c < 4; ++c) out[c] = static_cast<std::uint16_t>((in[0][c] + in[1][c] + in[2][c] + in[3][c] + 2) / 4);
     }
   }
   levels_.push_back(std::move(level));
@@ -152,18 +145,18 @@ Eigen::Vector4f TextureSampler::sample_level(const Eigen::Vector2f& uv, int inde
   const auto at = [&level](int x, int y) {
     return &level.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x))];
   };
-  const std::uint8_t* a = at(tx.first, ty.first);
-  const std::uint8_t* b = at(tx.second, ty.first);
-  const std::uint8_t* c = at(tx.first, ty.second);
-  const std::uint8_t* d = at(tx.second, ty.second);
-  const float fx = tx.share, fy = ty.share;
-  const float wa = (1.0f - fx) * (1.0f - fy), wb = fx * (1.0f - fy), wc = (1.0f - fx) * fy, wd = fx * fy;
-  const auto& table = encoding_ == Encoding::kSrgb ? decode_table() : linear_table();
-  const auto& plain = linear_table();
+  const float fx = tx.share, fy = ty.share, scale = 1.0f / 65535.0f;
+  const float top = scale * (1.0f - fy), low = scale * fy;
   // Four channels at once, by the compilers' vector extension (GCC and Clang).
   using Four = float __attribute__((vector_size(16)));
-  const auto texel = [&](const std::uint8_t* rgba) { return Four{table[rgba[0]], table[rgba[1]], table[rgba[2]], plain[rgba[3]]}; };
-  const Four sum = wa * texel(a) + wb * texel(b) + wc * texel(c) + wd * texel(d);
+  using Words = std::uint16_t __attribute__((vector_size(8)));
+  const auto texel = [&at](int x, int y) {
+    Words words;
+    std::memcpy(&words, at(x, y), sizeof words);
+    return __builtin_convertvector(words, Four);
+  };
+  const Four sum = (1.0f - fx) * top * texel(tx.first, ty.first) + fx * top * texel(tx.second, ty.first) +
+                   (1.0f - fx) * low * texel(tx.first, ty.second) + fx * low * texel(tx.second, ty.second);
   Eigen::Vector4f out;
   std::memcpy(out.data(), &sum, sizeof sum);
   return out;

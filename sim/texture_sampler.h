@@ -30,16 +30,16 @@ class TextureSampler {
   Eigen::Vector4f sample_level(const Eigen::Vector2f& uv, int level) const;
 
  private:
+  // Values as they are read, 65535 = 1: no table to look into for each of a sample's sixteen numbers, and steps finer than the stored ones.
   struct Level {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
+    std::vector<std::uint16_t> rgba;
   };
   void add_level(const Level& finer);
 
   std::vector<Level> levels_;
   Texture::Wrap wrap_u_, wrap_v_;
   bool nearest_;
-  Encoding encoding_;
   float size_;  // geometric mean of width and height in texels
 };
 

@@ -11,6 +11,9 @@ namespace {
 // Light hardly changes from pixel to pixel of one triangle, or of one smooth surface, unless its depth does.
 constexpr float kDepthStep = 0.02f;
 constexpr float kSameNormal = 0.9998f;  // cosine
+// A rougher surface's highlight hardly changes over four pixels, either.
+constexpr float kBroadLobe = 0.45f;
+constexpr std::size_t kQuad = 4, kPacket = 8;  // pixels
 
 bool near_in_depth(float depth, float other) { return std::abs(depth - other) < kDepthStep * other; }
 
@@ -31,21 +34,34 @@ TileShader::TileShader(const RayCaster& ray_caster, const Surfaces& surfaces, co
 
 void TileShader::shade(const PixelTile& tile) {
   ray_count_ = 0;
-  for (std::size_t first = 0; first < PixelTile::kPixels; first += 4) {
-    const int x = tile.left + PixelTile::kOrder[first].x, y = tile.top + PixelTile::kOrder[first].y;
-    const Hit* const hits = &tile.hits[first];
-    const bool whole = x + 1 < picture_.width && y + 1 < picture_.height;
-    const bool one_face =
-        whole && hits[0].valid() && std::all_of(hits + 1, hits + 4, [hits](const Hit& hit) {
-          return hit.instance == hits[0].instance && hit.primitive == hits[0].primitive && near_in_depth(hit.distance, hits[0].distance);
-        });
-    if (one_face && surfaces_.only_colour_varies(hits[0])) {
-      shade_face(tile, first);
-    } else {
-      shade_apart(tile, first);
+  for (std::size_t first = 0; first < PixelTile::kPixels; first += kPacket) {
+    if (on_one_face(tile, first, kPacket) && surfaces_.material(tile.hits[first]).roughness >= kBroadLobe) {
+      shade_face(tile, first, kPacket);
+      continue;
+    }
+    for (const std::size_t quad : {first, first + kQuad}) {
+      if (on_one_face(tile, quad, kQuad)) {
+        shade_face(tile, quad, kQuad);
+      } else {
+        shade_apart(tile, quad);
+      }
     }
   }
   if (ray_count_ > 0) cast_shadows();
+}
+
+// Whether all pixels of a quad or packet show one triangle, where nothing but the base colour differs.
+bool TileShader::on_one_face(const PixelTile& tile, std::size_t first, std::size_t count) const {
+  const PixelTile::Offset& last = PixelTile::kOrder[first + count - 1];
+  if (tile.left + last.x >= picture_.width || tile.top + last.y >= picture_.height) return false;
+  const auto hits = std::span(tile.hits).subspan(first, count);
+  const Hit& one = hits.front();
+  return one.valid() &&
+         std::all_of(hits.begin() + 1, hits.end(),
+                     [&one](const Hit& hit) {
+                       return hit.instance == one.instance && hit.primitive == one.primitive && near_in_depth(hit.distance, one.distance);
+                     }) &&
+         surfaces_.only_colour_varies(one);
 }
 
 TileShader::Look TileShader::look(const Ray& ray, const Hit& hit) const {
@@ -61,14 +77,50 @@ TileShader::Look TileShader::look(const Ray& ray, const Hit& hit) const {
   return out;
 }
 
-// All four pixels of a quad on one triangle, where nothing but the base colour differs.
-void TileShader::shade_face(const PixelTile& tile, std::size_t first) {
-  const Look look = this->look(tile.rays[first], tile.hits[first]);
+// All but the light itself. `position` is the pixel's own; the look may be a neighbour's.
+[[gnu::always_inline]] inline void TileShader::write_surface(int x, int y, const Hit& hit, const Look& look,
+                                                             const Eigen::Vector3f& position, float time) {
+  const std::size_t p = picture_.index(x, y);
+  picture_.glows[p] = look.point.emissive.isZero(0.0f) ? 0 : 1;
+  if (picture_.glows[p]) picture_.emitted[p] = look.point.emissive;
+  picture_.guide.depth[p] = hit.distance;
+  picture_.guide.tolerance[p] = hit.distance * (1.5f * spread_ / look.cosine + 0.001f);
+  picture_.guide.normal[p] = look.normal;
+  if (((x | y) & 1) == 0) {
+    const std::size_t h = picture_.half_index(x, y);
+    picture_.half_guide.depth[h] = hit.distance;
+    picture_.half_guide.tolerance[h] = 2.0f * picture_.guide.tolerance[p];
+    picture_.half_guide.normal[h] = look.normal;
+    picture_.half_positions[h] = lifted(position, look.point.face_normal);
+    picture_.half_normals[h] = look.point.face_normal;
+    picture_.half_times[h] = time;
+  }
+}
+
+[[gnu::always_inline]] inline void TileShader::look_for_light(int x, int y, const Look& look, const Eigen::Vector3f& position, float time) {
+  const std::size_t p = picture_.index(x, y);
+  picture_.visible[p] = 1.0f;
+  if (!shadows_ || !(parts_.total > 0.0f)) return;
+  // Every other pixel, as on a chessboard; the filter fills the rest.
+  if (((x ^ y) & 1) != 0) {
+    picture_.visible[p] = kUnknown;
+    return;
+  }
+  const SpreadPoint sample = points_.at((x + y) >> 1, (x - y) >> 1);
+  const int light = DirectLight::choose(parts_, sample.a);
+  Shadow& shadow = rays_[ray_count_++];
+  shadow = {light, p, lights_.shadow_ray(light, lifted(position, look.point.face_normal), sample.b, sample.c)};
+  shadow.ray.time = time;
+}
+
+void TileShader::shade_face(const PixelTile& tile, std::size_t first, std::size_t count) {
+  const std::size_t middle = first + count / 2 - 1;
+  const Look look = this->look(tile.rays[middle], tile.hits[middle]);
   lights_.irradiate(look.point, look.reflection, look.v, parts_);
   const Eigen::Vector3f& around = ray_caster_.scene().ambient;
   const auto direct_of = [&](const Reflection& r) { return with_zero(parts_.reflected_by(r)); };
   const auto ambient_of = [&](const Reflection& r) { return with_zero(around.cwiseProduct(r.diffuse + r.glossy_albedo)); };
-  const FaceColours colours = surfaces_.face_colours(tile.rays[first], tile.hits[first], look.point, spread_);
+  const FaceColours colours = surfaces_.face_colours(tile.rays[middle], tile.hits[middle], look.point, spread_);
   const bool plain = colours.is_constant(), affine = look.point.metallic <= 0.0f || look.point.metallic >= 1.0f;
   ColourRamp direct{direct_of(look.reflection), Eigen::Vector4f::Zero()}, ambient{ambient_of(look.reflection), Eigen::Vector4f::Zero()};
   if (!plain && affine) {
@@ -80,8 +132,7 @@ void TileShader::shade_face(const PixelTile& tile, std::size_t first) {
     direct = {direct_of(black), direct_of(white) - direct_of(black)};
     ambient = {ambient_of(black), ambient_of(white) - ambient_of(black)};
   }
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t i = first + k;
+  for (std::size_t i = first; i < first + count; ++i) {
     const int x = tile.left + PixelTile::kOrder[i].x, y = tile.top + PixelTile::kOrder[i].y;
     const std::size_t p = picture_.index(x, y);
     const Hit& hit = tile.hits[i];
@@ -96,7 +147,9 @@ void TileShader::shade_face(const PixelTile& tile, std::size_t first) {
       picture_.direct[p] = direct_of(reflection);
       picture_.ambient[p] = ambient_of(reflection);
     }
-    write_surface(x, y, hit, look, tile.rays[i].at(hit.distance), tile.rays[i].time);
+    const Eigen::Vector3f position = tile.rays[i].at(hit.distance);
+    write_surface(x, y, hit, look, position, tile.rays[i].time);
+    look_for_light(x, y, look, position, tile.rays[i].time);
   }
 }
 
@@ -127,6 +180,7 @@ void TileShader::shade_apart(const PixelTile& tile, std::size_t first) {
     picture_.direct[p] = with_zero(parts_.reflected_by(own.reflection));
     picture_.ambient[p] = with_zero(ray_caster_.scene().ambient.cwiseProduct(own.reflection.diffuse + own.reflection.glossy_albedo));
     write_surface(x, y, hit, own, own.point.position, tile.rays[i].time);
+    look_for_light(x, y, own, own.point.position, tile.rays[i].time);
   }
 }
 
@@ -143,38 +197,6 @@ void TileShader::write_background(int x, int y) {
   const std::size_t h = picture_.half_index(x, y);
   picture_.half_guide.depth[h] = picture_.half_guide.tolerance[h] = 0.0f;
   picture_.half_guide.normal[h] = 0;
-}
-
-// All but the light itself. `position` is the pixel's own; the look may be a neighbour's.
-void TileShader::write_surface(int x, int y, const Hit& hit, const Look& look, const Eigen::Vector3f& position, float time) {
-  const std::size_t p = picture_.index(x, y);
-  picture_.glows[p] = look.point.emissive.isZero(0.0f) ? 0 : 1;
-  if (picture_.glows[p]) picture_.emitted[p] = look.point.emissive;
-  picture_.guide.depth[p] = hit.distance;
-  picture_.guide.tolerance[p] = hit.distance * (1.5f * spread_ / look.cosine + 0.001f);
-  picture_.guide.normal[p] = look.normal;
-  if (((x | y) & 1) == 0) {
-    const std::size_t h = picture_.half_index(x, y);
-    picture_.half_guide.depth[h] = hit.distance;
-    picture_.half_guide.tolerance[h] = 2.0f * picture_.guide.tolerance[p];
-    picture_.half_guide.normal[h] = look.normal;
-    picture_.half_positions[h] = lifted(position, look.point.face_normal);
-    picture_.half_normals[h] = look.point.face_normal;
-    picture_.half_times[h] = time;
-  }
-  picture_.visible[p] = 1.0f;
-  if (!shadows_ || !(parts_.total > 0.0f)) return;
-  // Every other pixel, as on a chessboard; the filter fills the rest.
-  if (((x ^ y) & 1) != 0) {
-    picture_.visible[p] = kUnknown;
-    return;
-  }
-  // Of each quad the first and the last pixel are left: two numbers a quad.
-  const SpreadPoint sample = points_.at(z_order(x, y) >> 2 << 1 | static_cast<std::uint32_t>(x & 1));
-  const int light = DirectLight::choose(parts_, sample.a);
-  Shadow& shadow = rays_[ray_count_++];
-  shadow = {light, p, lights_.shadow_ray(light, lifted(position, look.point.face_normal), sample.b, sample.c)};
-  shadow.ray.time = time;
 }
 
 void TileShader::cast_shadows() {

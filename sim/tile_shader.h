@@ -24,7 +24,7 @@ class TileShader {
   void shade(const PixelTile& tile);
 
  private:
-  // How one smooth surface looks from here, for a whole quad of 2 x 2 pixels.
+  // How one smooth surface looks from here, for neighbouring pixels.
   struct Look {
     SurfacePoint point;
     Reflection reflection;
@@ -39,10 +39,12 @@ class TileShader {
   };
 
   Look look(const Ray& ray, const Hit& hit) const;
-  void shade_face(const PixelTile& tile, std::size_t first);
+  bool on_one_face(const PixelTile& tile, std::size_t first, std::size_t count) const;
+  void shade_face(const PixelTile& tile, std::size_t first, std::size_t count);
   void shade_apart(const PixelTile& tile, std::size_t first);
   void write_background(int x, int y);
   void write_surface(int x, int y, const Hit& hit, const Look& look, const Eigen::Vector3f& position, float time);
+  void look_for_light(int x, int y, const Look& look, const Eigen::Vector3f& position, float time);
   void cast_shadows();
 
   const RayCaster& ray_caster_;

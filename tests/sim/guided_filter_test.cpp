@@ -48,8 +48,9 @@ std::vector<float> pass_by_definition(const SurfaceGuide& guide, int radius, con
         if (in[q] < 0.0f) continue;
         dark = dark || in[q] < 1.0f;
         if (!same_surface(guide, p, q, std::abs(k))) continue;
-        sum += in[q];
-        known += 1.0f;
+        const float weight = std::abs(k) == radius ? 0.5f : 1.0f;
+        sum += weight * in[q];
+        known += weight;
       }
       out[p] = known > 0.0f ? sum / known : along_rows ? kUnknown : 1.0f;
       if (!dark) out[p] = 1.0f;

@@ -151,18 +151,19 @@ double mean_radiance(const Scene& scene, int samples, int bounces) {
   const auto caster = std::make_shared<const RayCaster>(std::make_shared<const Scene>(scene));
   const Surfaces surfaces(caster);
   const DirectLight direct(caster->scene().lights);
-  const PathTracer tracer(*caster, surfaces, direct, bounces);
-  LightParts parts;
-  double sum = 0.0;
+  PathTracer tracer(*caster, surfaces, direct, bounces, 1e-3f);
+  std::vector<LightPath> paths;
   for (int i = 0; i < samples; ++i) {
-    PixelRandom random(11, static_cast<std::uint32_t>(i));
     Ray ray;
     ray.origin = {0.2f, 0.1f, 1.3f};
     ray.direction = Eigen::Vector3f(std::sin(0.7f * static_cast<float>(i)), std::cos(0.7f * static_cast<float>(i)),
                                     std::sin(0.31f * static_cast<float>(i)))
                         .normalized();
-    sum += static_cast<double>(tracer.radiance(ray, 1e-3f, random, parts).mean());
+    paths.push_back({ray, PixelRandom(11, static_cast<std::uint32_t>(i))});
   }
+  tracer.trace(paths);
+  double sum = 0.0;
+  for (const LightPath& path : paths) sum += static_cast<double>(path.radiance.mean());
   return sum / samples;
 }
 

@@ -1,4 +1,4 @@
-// Quality fast, which shades a quad of pixels at once, beside light that is found for each pixel on its own.
+// Quality fast, which shades four or eight pixels at once, beside light that is found for each pixel on its own.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,7 +69,7 @@ Eigen::Vector3f light_towards(const RayCaster& caster, const Surfaces& surfaces,
          point.emissive;
 }
 
-TEST(TileShader, QuadsLookLikeTheirPixelsOneByOne) {
+TEST(TileShader, NeighboursLookLikeTheirPixelsOneByOne) {
   const auto caster = fixtures::caster_of(many_materials());
   RenderOptions options;
   options.shadows = options.occlusion = false;
@@ -99,7 +99,7 @@ TEST(TileShader, QuadsLookLikeTheirPixelsOneByOne) {
   }
   const double pixels = static_cast<double>(k.width) * k.height;
   EXPECT_LT(sum / pixels, 0.004);
-  EXPECT_LT(far_off / pixels, 0.004);  // highlights
+  EXPECT_LT(far_off / pixels, 0.005);  // highlights
   EXPECT_LT(largest, 0.25);
 }
 
