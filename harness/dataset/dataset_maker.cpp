@@ -83,9 +83,12 @@ void claim(const fs::path& folder, const std::string& text) {
 }
 
 // A hall is done when its record and all files that it names are there: parts of a set may have been copied together.
-bool is_done(const fs::path& folder, int number) {
-  if (!fs::exists(folder / record_name(number))) return false;
-  for (const ImageRecord& image : read_hall_record(folder / record_name(number)).images) {
+bool is_done(const fs::path& folder, int number, const std::string& set) {
+  const fs::path file = folder / record_name(number);
+  if (!fs::exists(file)) return false;
+  const HallRecord record = read_hall_record(file);
+  if (record.set != set) throw Error(file, "belongs to a set with other settings than dataset.yaml beside it; expected parts of one set");
+  for (const ImageRecord& image : record.images) {
     for (const auto& [name, sum] : image.files) {
       if (!fs::exists(folder / name)) return false;
     }
@@ -164,6 +167,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   const std::vector<std::string> classes = classes_of(config, sources);
   expect_camera(config.camera.name, sources);
   const std::string text = description(config, sources, formats);
+  const std::string set = sha256(text);
   claim(folder, text);
   make_folder(folder / "halls");
   make_folder(folder / "images");
@@ -181,7 +185,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   std::vector<bool> done(static_cast<std::size_t>(halls), false);
   for (int number = shard.index; number < halls; number += shard.count) {
     progress.of += images_of(number);
-    if (is_done(folder, number)) {
+    if (is_done(folder, number, set)) {
       done[static_cast<std::size_t>(number)] = true;
       progress.found += images_of(number);
     } else {
@@ -209,6 +213,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
     Prepared now = coming.get();
     if (!to_do.empty()) coming = std::async(how, prepare, to_do.front());
     HallRecord record;
+    record.set = set;
     record.number = number;
     record.hall = now.hall;
     record.split = splits[static_cast<std::size_t>(number)];
@@ -232,9 +237,9 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
 
   DatasetSummary summary;
   for (int number = 0; number < halls; ++number)
-    summary.missing_halls += !done[static_cast<std::size_t>(number)] && !is_done(folder, number);
+    summary.missing_halls += !done[static_cast<std::size_t>(number)] && !is_done(folder, number, set);
   if (summary.missing_halls > 0) return summary;
-  return write_index(folder, halls, config.count, classes, formats, sha256(text));
+  return write_index(folder, halls, config.count, classes, formats, set);
 }
 
 }  // namespace waretwin

@@ -91,6 +91,7 @@ std::filesystem::path record_name(int number) {
 
 std::string to_json(const HallRecord& record) {
   Json json;
+  json["set"] = record.set;
   json["hall"] = record.hall;
   json["number"] = record.number;
   json["split"] = record.split;
@@ -103,6 +104,7 @@ HallRecord read_hall_record(const std::filesystem::path& file) {
   try {
     const Json json = Json::parse(read_file(file));
     HallRecord record;
+    record.set = json.at("set");
     record.hall = json.at("hall");
     record.number = json.at("number");
     record.split = json.at("split");

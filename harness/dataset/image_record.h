@@ -24,6 +24,7 @@ struct ImageRecord {
 };
 
 struct HallRecord {
+  std::string set;  // checksum of the dataset.yaml that it was made with
   int number = 0;
   std::string hall;   // its name
   std::string split;  // train, valid, test

@@ -299,6 +299,20 @@ TEST(DatasetFolder, BelongsToOneSet) {
   EXPECT_FALSE(fs::exists(folder.path() / "new"));
 }
 
+TEST(DatasetFolder, RefusesPartsOfAnotherSet) {
+  const test::TemporaryFolder folder;
+  const fs::path one = folder.path() / "one", other = folder.path() / "other";
+  DatasetConfig config = small_set();
+  config.count = 2;
+  config.images_per_hall = 1;
+  make_dataset(config, small_halls(), one, {}, {.index = 0, .count = 2});
+  config.seed += 1;
+  make_dataset(config, small_halls(), other, {}, {.index = 1, .count = 2});
+  // As if the shards were copied together.
+  fs::copy(one, other, fs::copy_options::recursive | fs::copy_options::skip_existing);
+  EXPECT_ERROR(make_dataset(config, small_halls(), other, {}, {}), "000000.json", "other settings");
+}
+
 TEST(DatasetFolder, MakesAgainWhatIsGoneAndBearsWhatAKillLeft) {
   const test::TemporaryFolder folder;
   const fs::path set = folder.path() / "set";
