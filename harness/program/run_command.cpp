@@ -65,7 +65,7 @@ void print_summary(const char* name, const ScoreSummary& s) {
 void warn_of_strange_classes(const RunConfig& config, const Scene& scene) {
   if (config.truth_stages.detector || config.mapper.detector != "yolo" || scene.objects.empty()) return;
   const std::filesystem::path model = model_or_shipped(config.mapper.model);
-  const std::vector<std::string> known = YoloDetector(model, config.mapper.detect).class_names();
+  const std::vector<std::string> known = detected_classes(model, config.mapper.detect);
   const auto list = [](const auto& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;

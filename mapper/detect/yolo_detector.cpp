@@ -33,9 +33,10 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::vector<std::string> renamed(std::vector<std::string> names, const std::vector<std::string>& pairs) {
+// The model's names as the configuration wants them, one for each class of the network.
+std::vector<std::string> renamed(std::vector<std::string> names, const std::filesystem::path& file, const DetectConfig& config) {
   const std::vector<std::string> original = names;
-  for (const std::string& pair : pairs) {
+  for (const std::string& pair : config.rename) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size()) {
       throw Error("detector rename '" + pair + "'; expected from=to");
@@ -48,13 +49,36 @@ std::vector<std::string> renamed(std::vector<std::string> names, const std::vect
       if (original[i] == from) names[i] = pair.substr(equals + 1);
     }
   }
+  for (const std::string& name : config.classes) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw Error(file, "class '" + name + "' is to be kept; the model does not have it");
+    }
+  }
   return names;
+}
+
+bool is_kept(const std::string& name, const DetectConfig& config) {
+  return config.classes.empty() || std::find(config.classes.begin(), config.classes.end(), name) != config.classes.end();
+}
+
+// Each once.
+std::vector<std::string> kept_names(const std::vector<std::string>& names, const DetectConfig& config) {
+  std::vector<std::string> kept;
+  for (const std::string& name : names) {
+    if (is_kept(name, config) && std::find(kept.begin(), kept.end(), name) == kept.end()) kept.push_back(name);
+  }
+  return kept;
 }
 
 constexpr int kOnnxInput = 640;         // pixels, where neither the configuration nor the model says
 constexpr double kLetterboxGrey = 114;  // the grey that YOLOv5 and YOLOv8 are trained with
 
 }  // namespace
+
+std::vector<std::string> detected_classes(const std::filesystem::path& model, const DetectConfig& config) {
+  const std::filesystem::path file = find_model_files(model, config.names).names;
+  return kept_names(renamed(read_class_names(file), file, config), config);
+}
 
 struct YoloDetector::Network {
   ModelFiles files;
@@ -123,27 +147,12 @@ YoloDetector::YoloDetector(const std::filesystem::path& model, const DetectConfi
   if (config.input_height > 0) network.input.height = config.input_height;
   network.letterbox = config.letterbox == "on" || (config.letterbox == "auto" && !files.darknet());
 
-  names_ = renamed(std::move(names_), config.rename);
-  for (const std::string& name : config.classes) {
-    if (std::find(names_.begin(), names_.end(), name) == names_.end()) {
-      throw Error(files.names, "class '" + name + "' is to be kept; the model does not have it");
-    }
-  }
+  names_ = renamed(std::move(names_), files.names, config);
 }
 
 YoloDetector::~YoloDetector() = default;
 
-bool YoloDetector::kept(const std::string& name) const {
-  return config_.classes.empty() || std::find(config_.classes.begin(), config_.classes.end(), name) != config_.classes.end();
-}
-
-std::vector<std::string> YoloDetector::class_names() const {
-  std::vector<std::string> names;
-  for (const std::string& name : names_) {
-    if (kept(name) && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return names;
-}
+std::vector<std::string> YoloDetector::class_names() const { return kept_names(names_, config_); }
 
 std::vector<Detection> YoloDetector::detect(const RgbdFrame& frame) { return detect(frame.colour); }
 
@@ -185,8 +194,9 @@ std::vector<Detection> YoloDetector::detect(const cv::Mat& colour) {
     }
     decode_rows(rows, layout, network.input, placement, colour.size(), config_.confidence, names_, detections);
   }
-  detections.erase(std::remove_if(detections.begin(), detections.end(), [this](const Detection& d) { return !kept(d.class_name); }),
-                   detections.end());
+  detections.erase(
+      std::remove_if(detections.begin(), detections.end(), [this](const Detection& d) { return !is_kept(d.class_name, config_); }),
+      detections.end());
   return suppress_overlaps(std::move(detections), config_.nms_iou);
 }
 

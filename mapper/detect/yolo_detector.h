@@ -12,6 +12,9 @@
 
 namespace waretwin {
 
+// What a model's detections may be called: its names after renaming and filtering. Reads no network. Throws Error as YoloDetector does.
+std::vector<std::string> detected_classes(const std::filesystem::path& model, const DetectConfig& config);
+
 class YoloDetector : public Detector {
  public:
   // `model`: a folder, a .cfg or .weights file, an .onnx file, or a shipped model's name (see find_model_files). Throws Error, one line,
@@ -24,12 +27,11 @@ class YoloDetector : public Detector {
   std::vector<Detection> detect(const RgbdFrame& frame) override;
   std::vector<Detection> detect(const cv::Mat& colour);  // CV_8UC3, BGR
 
-  // What detections may be called: names of the model after renaming and filtering.
+  // See detected_classes.
   std::vector<std::string> class_names() const;
 
  private:
   struct Network;
-  bool kept(const std::string& name) const;
 
   DetectConfig config_;
   std::vector<std::string> names_;  // after renaming, by the network's class number

@@ -106,6 +106,7 @@ TEST(YoloDetector, KeepsAndRenamesClasses) {
   const fs::path folder = test::shared_data("yolo_fastest");
   YoloDetector detector(folder, {.confidence = 0.3, .classes = {"hound"}, .rename = {"dog=hound"}});
   EXPECT_EQ(detector.class_names(), std::vector<std::string>{"hound"});
+  EXPECT_EQ(detected_classes(folder, {.classes = {"hound"}, .rename = {"dog=hound"}}), detector.class_names());
   const std::vector<Detection> found = detector.detect(cv::imread((folder / "dog.jpg").string()));
   ASSERT_FALSE(found.empty());
   for (const Detection& detection : found) EXPECT_EQ(detection.class_name, "hound");
