@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "harness/dataset/dataset_maker.h"
 #include "harness/program/common_options.h"
+#include "harness/program/freed_memory.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/progress.h"
 
@@ -58,6 +59,7 @@ std::string time_text(double seconds) {
 
 int dataset(const DatasetOptions& options) {
   options.common.apply();
+  keep_freed_memory();
   DatasetConfig config;
   if (options.common.seed) config.seed = *options.common.seed;
   if (options.count) config.count = *options.count;

@@ -30,8 +30,8 @@ std::vector<std::size_t> epoch_order(std::size_t pictures, const TrainConfig& co
   return order;
 }
 
-EpochLoader::EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool late)
-    : cache_(cache), config_(config), epoch_(epoch), late_(late), order_(epoch_order(cache.count(), config, epoch)), worker_([this] {
+EpochLoader::EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, const EpochStyle& style)
+    : cache_(cache), config_(config), epoch_(epoch), style_(style), order_(epoch_order(cache.count(), config, epoch)), worker_([this] {
         work();
       }) {}
 
@@ -49,8 +49,8 @@ std::vector<Sample> EpochLoader::make(std::size_t step) {
   std::vector<Sample> batch;
   for (std::size_t i = step * config_.batch; i < (step + 1) * config_.batch; ++i) {
     Dice dice(random, i);
-    batch.push_back(augmented([this](std::size_t index) { return cache_.get(index); }, cache_.count(), order_[i],
-                              {config_.width, config_.height}, config_.augment, late_, dice));
+    batch.push_back(augmented([this](std::size_t index) { return cache_.get(index); }, cache_.count(), order_[i], style_.size,
+                              config_.augment, style_.late, dice));
   }
   return batch;
 }

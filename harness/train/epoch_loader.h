@@ -16,10 +16,16 @@ namespace waretwin::train {
 // Which pictures an epoch shows, in order: each one once, a set below epoch_pictures as often as that takes; the last batch is full.
 std::vector<std::size_t> epoch_order(std::size_t pictures, const TrainConfig& config, int epoch);
 
+// How an epoch shows its pictures.
+struct EpochStyle {
+  cv::Size size;
+  bool late = false;  // see augmented()
+};
+
 class EpochLoader {
  public:
   // What epoch and place in it give is the same whatever came before. While it lives, nobody else uses the cache.
-  EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, bool late);
+  EpochLoader(PictureCache& cache, const TrainConfig& config, int epoch, const EpochStyle& style);
   ~EpochLoader();
   EpochLoader(const EpochLoader&) = delete;
   EpochLoader& operator=(const EpochLoader&) = delete;
@@ -35,7 +41,7 @@ class EpochLoader {
   PictureCache& cache_;
   const TrainConfig config_;
   const int epoch_;
-  const bool late_;
+  const EpochStyle style_;
   const std::vector<std::size_t> order_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,6 +1,5 @@
 // waretwin-train: what `waretwin train` starts, so that nothing else loads libtorch.
 #include <ATen/Parallel.h>
-#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "harness/program/freed_memory.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/progress.h"
 #include "harness/train/train_options.h"
@@ -56,19 +56,12 @@ train::TrainingRequest request_of(const TrainOptions& options) {
   return request;
 }
 
-// Each step asks for the same large blocks again. By default they go back to the system, which hands them out page by page, cleared: a
-// seventh of a training's time.
-void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-}
-
 int train_by(const TrainOptions& options) {
   options.common.apply();
   // Debian's libtorch takes one thread unless told otherwise.
   at::set_num_threads(options.common.threads > 0 ? options.common.threads
                                                  : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
-  keep_freed_memory();
+  keep_freed_memory();  // a seventh of the time
   const train::TrainingRequest request = request_of(options);
   const InterruptWatch watch;
   Progress progress("train", options.common.quiet);

@@ -67,6 +67,9 @@ at::Tensor Network::forward(const at::Tensor& pictures, bool training, double mo
         x = at::cat(sources, 1);
         break;
       }
+      case LayerPlan::Kind::kShortcut:
+        x = x + outputs[static_cast<std::size_t>(layer.sources.front())];
+        break;
     }
     outputs.push_back(x);
   }

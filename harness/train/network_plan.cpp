@@ -9,6 +9,15 @@ namespace {
 
 LayerPlan convolution(int channels, int size, int stride = 1) { return {LayerPlan::Kind::kConvolution, channels, size, stride}; }
 
+void add_residual_blocks(std::vector<LayerPlan>& layers, int count, int inner_channels) {
+  for (int i = 0; i < count; ++i) {
+    const int from = static_cast<int>(layers.size()) - 1, channels = layers.back().channels;
+    layers.push_back(convolution(inner_channels, 1));
+    layers.push_back(convolution(channels, 3));
+    layers.push_back({.kind = LayerPlan::Kind::kShortcut, .channels = channels, .sources = {from}});
+  }
+}
+
 std::string convolution_cfg(const LayerPlan& layer) {
   return "[convolutional]\n" + std::string(layer.normalised ? "batch_normalize=1\n" : "") + "filters=" + std::to_string(layer.channels) +
          "\nsize=" + std::to_string(layer.size) + "\nstride=" + std::to_string(layer.stride) +
@@ -27,13 +36,14 @@ NetworkPlan plan_network(int width, int height, int classes, const std::vector<B
   WARETWIN_CHECK(width % 32 == 0 && height % 32 == 0, "upsampling must meet the finer layer");
   NetworkPlan plan{width, height, classes, anchors, {}};
   std::vector<LayerPlan>& layers = plan.layers;
-  layers = {convolution(16, 3, 2), convolution(32, 3, 2),  convolution(32, 3), convolution(64, 3, 2),
-            convolution(64, 3),    convolution(128, 3, 2), convolution(128, 3)};
+  layers = {convolution(16, 3, 2), convolution(32, 3, 2), convolution(64, 3, 2)};
+  add_residual_blocks(layers, 1, 32);
+  layers.push_back(convolution(128, 3, 2));
+  add_residual_blocks(layers, 2, 64);
   const int fine = static_cast<int>(layers.size()) - 1;
-  for (const LayerPlan& layer :
-       {convolution(128, 3, 2), convolution(192, 3), convolution(96, 1), convolution(160, 3), convolution(96, 1)}) {
-    layers.push_back(layer);
-  }
+  layers.push_back(convolution(128, 3, 2));
+  add_residual_blocks(layers, 4, 64);
+  layers.push_back(convolution(96, 1));
   layers.push_back({LayerPlan::Kind::kUpsample, 96});
   const int wide = static_cast<int>(layers.size()) - 1;
   layers.push_back({.kind = LayerPlan::Kind::kRoute, .channels = 96 + 128, .sources = {wide, fine}});
@@ -69,6 +79,9 @@ std::string darknet_cfg(const NetworkPlan& plan) {
         break;
       case LayerPlan::Kind::kRoute:
         text += "[route]\nlayers=" + list_of(layer.sources) + "\n\n";
+        break;
+      case LayerPlan::Kind::kShortcut:
+        text += "[shortcut]\nfrom=" + list_of(layer.sources) + "\nactivation=linear\n\n";
         break;
     }
   }

@@ -10,12 +10,12 @@
 namespace waretwin::train {
 
 struct LayerPlan {
-  enum class Kind { kConvolution, kUpsample, kRoute };
+  enum class Kind { kConvolution, kUpsample, kRoute, kShortcut };
   Kind kind = Kind::kConvolution;
   int channels = 0;               // that come out
   int size = 3, stride = 1;       // of a convolution, padded by size / 2
   bool normalised = true;         // batch normalisation and leaky slope 0.1; otherwise a bias alone
-  std::vector<int> sources = {};  // of a route: layers whose channels are put one after the other
+  std::vector<int> sources = {};  // of a route: layers whose channels are put one after the other; of a shortcut: the one layer it adds
 };
 
 struct NetworkPlan {
@@ -30,8 +30,9 @@ struct NetworkPlan {
   int numbers() const { return 5 + classes; }  // an anchor
 };
 
-// About a million weights: a column of convolutions to a 32nd of the input, whose wide view is laid over the finer 16th that the boxes are
-// read from. Only convolutions with stride, where OpenCV and Darknet agree for every size, and no pooling or reorg, where they need not.
+// About a million weights. Darknet's residual blocks (half the channels by 1 x 1, then 3 x 3, added to what came in) from an eighth of the
+// input down to a 32nd, whose wide view is laid over the finer 16th that the boxes are read from. Only convolutions with stride, where
+// OpenCV and Darknet agree for every size, and no pooling or reorg, where they need not.
 NetworkPlan plan_network(int width, int height, int classes, const std::vector<BoxShape>& anchors);
 
 // Channels that go into a layer.

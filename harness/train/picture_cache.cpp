@@ -1,10 +1,9 @@
 #include "harness/train/picture_cache.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/error.h"
 #include "mapper/detect/resized_picture.h"
+#include "sensors/recordings/recorded_image.h"
 
 namespace waretwin::train {
 
@@ -19,16 +18,8 @@ PictureCache::PictureCache(const LabelledSet& set, const cv::Size& size, std::in
 
 Sample PictureCache::get(std::size_t index) {
   if (!kept_[index].empty()) return {kept_[index], boxes_[index]};
-  cv::Mat picture;
-  try {
-    // Labels know nothing of an orientation that a camera noted.
-    picture = cv::imread(files_[index].string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {
-    picture.release();
-  }
-  if (picture.empty()) throw Error(files_[index], "no picture that can be read; expected a JPEG or PNG file");
   cv::Mat small(size_, CV_8UC3);
-  resize_picture(picture, small);
+  resize_picture(read_colour_image(files_[index]), small);
   cv::cvtColor(small, small, cv::COLOR_BGR2RGB);
   const auto bytes = static_cast<std::int64_t>(small.total() * small.elemSize());
   if (bytes <= free_bytes_) {

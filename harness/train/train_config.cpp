@@ -1,5 +1,8 @@
 #include "harness/train/train_config.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace waretwin::train {
 
 void AugmentConfig::visit(Fields& f) {
@@ -20,6 +23,11 @@ void AugmentConfig::visit(Fields& f) {
   f("kept_share", kept_share, "a box of which less is left by crop and cut-out counts as ignored", {.min = 0, .max = 1});
 }
 
+cv::Size TrainConfig::small_size() const {
+  const auto side = [this](int full) { return std::max(32, 32 * static_cast<int>(std::lround(small_scale * full / 32.0))); };
+  return {side(width), side(height)};
+}
+
 void TrainConfig::visit(Fields& f) {
   f("width", width, "width of the network's input in pixels, a multiple of 32", {.min = 64, .max = 4096});
   f("height", height, "height of the network's input in pixels, a multiple of 32", {.min = 64, .max = 4096});
@@ -35,6 +43,8 @@ void TrainConfig::visit(Fields& f) {
   f("learning_rate", learning_rate, "of AdamW after the warm-up", {.min = 0, .max = 1});
   f("final_rate", final_rate, "share of it that is left at the end, down a cosine", {.min = 0, .max = 1});
   f("warm_up", warm_up, "steps in which the learning rate grows from 0", {.min = 0, .max = 1000000});
+  f("small_share", small_share, "share of the training, at its start, with smaller pictures, which take less time", {.min = 0, .max = 1});
+  f("small_scale", small_scale, "size of these against the input", {.min = 0.1, .max = 1});
   f("weight_decay", weight_decay, "of convolution weights, as AdamW has it", {.min = 0, .max = 10});
   f("average_decay", average_decay, "of the moving average of weights that is validated and written", {.min = 0, .max = 0.99999});
   f("largest_gradient", largest_gradient, "norm to which gradients are cut", {.min = 1e-6, .max = 1e9});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <opencv2/core/types.hpp>
 
 #include "core/fields.h"
 
@@ -24,7 +25,7 @@ struct AugmentConfig {
 };
 
 struct TrainConfig {
-  int width = 448, height = 256;  // of the network's input
+  int width = 576, height = 320;  // of the network's input
   int anchors = 5;
   int epochs = 0;        // 0: about 54,000 pictures in all
   double minutes = 0.0;  // 0: no limit
@@ -33,7 +34,8 @@ struct TrainConfig {
   std::uint64_t seed = 1;
   int batch = 8;
   double learning_rate = 0.003, final_rate = 0.02;
-  int warm_up = 200;  // steps
+  int warm_up = 200;                             // steps
+  double small_share = 0.5, small_scale = 0.67;  // of the training, at its start; of the input's sides
   double weight_decay = 0.05;
   double average_decay = 0.999;
   double largest_gradient = 10.0;
@@ -42,6 +44,8 @@ struct TrainConfig {
   double cache_mb = 4000.0, cache_scale = 1.5;
   AugmentConfig augment;
 
+  // The input while pictures are small, multiples of 32.
+  cv::Size small_size() const;
   void visit(Fields& f);
 };
 

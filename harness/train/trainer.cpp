@@ -242,15 +242,21 @@ class Training {
 
   // Once through the pictures; how many steps that took.
   int train_once(EpochResult& result) {
-    const bool late = share_done(static_cast<double>(state_.steps)) >= 1.0 - config_.augment.plain_share;
-    EpochLoader loader(train_pictures_, config_, static_cast<int>(state_.epochs_done), late);
+    const double begun = share_done(static_cast<double>(state_.steps));
+    EpochStyle style{{config_.width, config_.height}, begun >= 1.0 - config_.augment.plain_share};
+    // What is learned of small pictures holds for large ones, where an object looks like a nearer one; anchors keep their cells.
+    if (begun < config_.small_share) style.size = config_.small_size();
+    NetworkPlan plan = plan_;
+    plan.width = style.size.width;
+    plan.height = style.size.height;
+    EpochLoader loader(train_pictures_, config_, static_cast<int>(state_.epochs_done), style);
     int steps = 0;
     while (const auto batch = loader.next()) {
       if (hooks_.check) hooks_.check();
       const double share = share_done(static_cast<double>(state_.steps));
       if (share >= 1.0 && steps > 0) break;
       result.rate = rate_at(share);
-      step(*batch, result);
+      step(*batch, plan, result);
       ++steps;
       report(result.epoch, steps, share);
     }
@@ -274,10 +280,11 @@ class Training {
     }
   }
 
-  void step(const std::vector<Sample>& batch, EpochResult& result) {
+  // `plan`: with the size of the batch's pictures.
+  void step(const std::vector<Sample>& batch, const NetworkPlan& plan, EpochResult& result) {
     std::vector<std::vector<TruthBox>> truth;
     for (const Sample& sample : batch) truth.push_back(sample.boxes);
-    const RegionLoss loss = region_loss(network_.forward(as_tensor(batch), true), truth, plan_, config_);
+    const RegionLoss loss = region_loss(network_.forward(as_tensor(batch), true), truth, plan, config_);
     if (!std::isfinite(loss.total.item<double>())) {
       throw Error("the loss is no number after " + std::to_string(state_.steps) + " steps; expected a smaller train.learning_rate");
     }

@@ -6,10 +6,18 @@
 
 namespace waretwin {
 
-// By areas where it shrinks: every pixel counts, so that thin things neither flicker nor vanish. `to` is filled, at the size that it has.
+// By areas where it shrinks: every pixel counts, so that thin things neither flicker nor vanish. Halves first, which is several times as
+// fast as any other area; a last step of less than a quarter is interpolated, which loses nothing to be seen. `to` is filled, at the size
+// that it has.
 inline void resize_picture(const cv::Mat& picture, cv::Mat& to) {
-  const bool shrinks = to.cols < picture.cols && to.rows < picture.rows;
-  cv::resize(picture, to, to.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+  cv::Mat from = picture;
+  while (from.cols >= 2 * to.cols && from.rows >= 2 * to.rows) {
+    cv::Mat half;
+    cv::resize(from, half, {from.cols / 2, from.rows / 2}, 0, 0, cv::INTER_AREA);
+    from = half;
+  }
+  const bool shrinks = 4 * from.cols > 5 * to.cols && 4 * from.rows > 5 * to.rows;
+  cv::resize(from, to, to.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
 }
 
 }  // namespace waretwin

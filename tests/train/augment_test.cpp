@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "harness/train/epoch_loader.h"
+#include "mapper/detect/resized_picture.h"
 
 namespace waretwin::train {
 namespace {
@@ -89,8 +90,8 @@ TEST(Augment, LatePicturesAreOftenWhole) {
   const Sample source = white_box();
   AugmentConfig config = only_geometry();
   config.flip = 0.0;
-  cv::Mat expected;
-  cv::resize(source.picture, expected, kSize, 0, 0, cv::INTER_AREA);
+  cv::Mat expected(kSize, CV_8UC3);
+  resize_picture(source.picture, expected);
   int whole = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
     Dice dice(random, i);

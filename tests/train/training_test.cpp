@@ -112,6 +112,18 @@ TEST_F(Training, TheSeedAloneDecides) {
   EXPECT_FALSE(weights(one) == weights(other));
 }
 
+TEST_F(Training, WhatSmallPicturesTeachHoldsForLargeOnes) {
+  TrainingRequest wanted = request("out");
+  wanted.config.epochs = 5;
+  wanted.config.epoch_pictures = 240;
+  wanted.config.small_share = 1.0;
+  wanted.config.small_scale = 0.6;
+  EXPECT_EQ(wanted.config.small_size(), cv::Size(96, 64));
+  EXPECT_EQ(TrainConfig().small_size(), cv::Size(384, 224));
+  // Anchors that shrank with the pictures would make boxes of 0.6 of the right size, whose IoU is 0.36.
+  EXPECT_GT(train_detector(wanted, {}).best_ap50, 0.8);
+}
+
 TEST_F(Training, TimeIsALimit) {
   TrainingRequest wanted = request("out");
   wanted.config.minutes = 0.03;
@@ -123,7 +135,7 @@ TEST_F(Training, TimeIsALimit) {
 TEST_F(Training, BadSetsAreRefusedInOneLine) {
   const TrainingRequest wanted = request("out");
   write_file(set_ / "images/p1003.png", "no picture");
-  EXPECT_ERROR(train_detector(wanted, {}), "p1003.png", "no picture that can be read");
+  EXPECT_ERROR(train_detector(wanted, {}), "p1003.png", "not a picture that can be decoded");
   const std::string data = read_file(set_ / "set.data");
   write_file(set_ / "set.data", "train = train.txt\nnames = set.names\n");
   EXPECT_ERROR(train_detector(wanted, {}), "no split 'valid'");
