@@ -33,15 +33,14 @@ void find_openness(const RayCaster& ray_caster, const LitPicture& picture, std::
         for (int x = left; x < std::min(left + kColumnsAtOnce, guide.width); ++x) {
           const std::size_t h = static_cast<std::size_t>(y) * static_cast<std::size_t>(guide.width) + static_cast<std::size_t>(x);
           if (guide.depth[h] == 0.0f) continue;
-          // Every other pixel, as on a chessboard; the filter fills the rest.
-          if (((x ^ y) & 1) != 0) {
+          if (!SpreadPoints::looks_from(x, y)) {
             openness[h] = kUnknown;
             continue;
           }
           const Eigen::Vector3f& normal = picture.half_normals[h];
           Eigen::Vector3f a, b;
           make_basis(normal, a, b);
-          const SpreadPoint sample = points.at((x + y) >> 1, (x - y) >> 1);
+          const SpreadPoint sample = points.at(x, y);
           const float radius = std::sqrt(sample.a);
           const Eigen::Vector2f around = circle(sample.b);
           pixels.push_back(h);

@@ -9,8 +9,8 @@
 
 namespace waretwin {
 
-// By one ray from each pixel of the picture's half-size guide, smoothed: 1 in the open, 0 where something near is all around; in the order
-// of half_guide. `scratch` is kept by the caller.
+// By one ray from every other pixel of the picture's half-size guide, smoothed: 1 in the open, 0 where something near is all around; in the
+// order of half_guide. `scratch` is kept by the caller.
 void find_openness(const RayCaster& ray_caster, const LitPicture& picture, std::uint32_t seed, std::vector<float>& openness,
                    std::vector<float>& scratch);
 

@@ -9,8 +9,8 @@
 namespace waretwin {
 
 struct RenderOptions {
-  // "fast": direct light with one shadow ray per pixel, ambient light with half-resolution occlusion. "path": unidirectional path tracing
-  // with next-event estimation, for stills and training images.
+  // "fast": direct light with one shadow ray for two pixels, ambient light with half-resolution occlusion. "path": unidirectional path
+  // tracing with next-event estimation, for stills and training images.
   std::string quality = "fast";
   int samples = 16;       // per pixel, in `path`
   int bounces = 4;        // in `path`: surfaces after the first that may add light

@@ -39,8 +39,11 @@ struct LightRow {
 
 // The s-th of a pixel's samples: anywhere in the pixel and, since each has a part of the exposure to itself, at its time.
 LightPath first_piece(const PixelRays& pixel_rays, int x, int y, int s, int samples, std::uint32_t seed) {
-  const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(pixel_rays.width()) + static_cast<std::uint32_t>(x);
-  PixelRandom random(seed, pixel * static_cast<std::uint32_t>(samples) + static_cast<std::uint32_t>(s));
+  const std::uint64_t pixel =
+      static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(pixel_rays.width()) + static_cast<std::uint64_t>(x);
+  const std::uint64_t path = pixel * static_cast<std::uint64_t>(samples) + static_cast<std::uint64_t>(s);
+  // Many samples of a large picture are more than 32 bits tell apart.
+  PixelRandom random(seed + 0x9e3779b9u * static_cast<std::uint32_t>(path >> 32), static_cast<std::uint32_t>(path));
   const double dx = static_cast<double>(random.uniform()) - 0.5, dy = static_cast<double>(random.uniform()) - 0.5;
   float moment = 0.5f;
   if (pixel_rays.lasts()) moment = (static_cast<float>(s) + random.uniform()) / static_cast<float>(samples);

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include "core/error.h"
 
@@ -105,13 +104,10 @@ TextureSampler::TextureSampler(const Texture& texture, Encoding encoding)
   Level& full = levels_.emplace_back(Level{texture.width, texture.height, {}});
   full.rgba.resize(texture.rgba.size());
   for (std::size_t i = 0; i < full.rgba.size(); ++i) full.rgba[i] = (i % 4 == 3 ? alpha : colour)[texture.rgba[i]];
-  while (levels_.back().width > 1 || levels_.back().height > 1) {
-    const Level finer = levels_.back();
-    add_level(finer);
-  }
+  while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
 }
 
-void TextureSampler::add_level(const Level& finer) {
+TextureSampler::Level TextureSampler::half_of(const Level& finer) {
   Level level;
   level.width = std::max(1, finer.width / 2);
   level.height = std::max(1, finer.height / 2);
@@ -129,7 +125,7 @@ void TextureSampler::add_level(const Level& finer) {
       for (int c = 0; c < 4; ++c) out[c] = static_cast<std::uint16_t>((in[0][c] + in[1][c] + in[2][c] + in[3][c] + 2) / 4);
     }
   }
-  levels_.push_back(std::move(level));
+  return level;
 }
 
 int TextureSampler::level(float footprint) const {

@@ -35,7 +35,7 @@ class TextureSampler {
     int width = 0, height = 0;
     std::vector<std::uint16_t> rgba;
   };
-  void add_level(const Level& finer);
+  static Level half_of(const Level& finer);
 
   std::vector<Level> levels_;
   Texture::Wrap wrap_u_, wrap_v_;

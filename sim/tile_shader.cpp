@@ -8,14 +8,17 @@ namespace waretwin {
 
 namespace {
 
-// Light hardly changes from pixel to pixel of one triangle, or of one smooth surface, unless its depth does.
-constexpr float kDepthStep = 0.02f;
+// Light hardly changes from pixel to pixel of one triangle, or of one smooth surface, unless its depth does: by less than this over a
+// packet, and twice as much over a quad, which is half as wide.
+constexpr float kDepthStep = 0.01f;
 constexpr float kSameNormal = 0.9998f;  // cosine
 // A rougher surface's highlight hardly changes over four pixels, either.
 constexpr float kBroadLobe = 0.45f;
 constexpr std::size_t kQuad = 4, kPacket = 8;  // pixels
 
-bool near_in_depth(float depth, float other) { return std::abs(depth - other) < kDepthStep * other; }
+bool near_in_depth(float depth, float other, std::size_t count) {
+  return std::abs(depth - other) < (count == kPacket ? kDepthStep : 2.0f * kDepthStep) * other;
+}
 
 Eigen::Vector4f with_zero(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z(), 0.0f}; }
 
@@ -58,8 +61,9 @@ bool TileShader::on_one_face(const PixelTile& tile, std::size_t first, std::size
   const Hit& one = hits.front();
   return one.valid() &&
          std::all_of(hits.begin() + 1, hits.end(),
-                     [&one](const Hit& hit) {
-                       return hit.instance == one.instance && hit.primitive == one.primitive && near_in_depth(hit.distance, one.distance);
+                     [&one, count](const Hit& hit) {
+                       return hit.instance == one.instance && hit.primitive == one.primitive &&
+                              near_in_depth(hit.distance, one.distance, count);
                      }) &&
          surfaces_.only_colour_varies(one);
 }
@@ -101,12 +105,11 @@ TileShader::Look TileShader::look(const Ray& ray, const Hit& hit) const {
   const std::size_t p = picture_.index(x, y);
   picture_.visible[p] = 1.0f;
   if (!shadows_ || !(parts_.total > 0.0f)) return;
-  // Every other pixel, as on a chessboard; the filter fills the rest.
-  if (((x ^ y) & 1) != 0) {
+  if (!SpreadPoints::looks_from(x, y)) {
     picture_.visible[p] = kUnknown;
     return;
   }
-  const SpreadPoint sample = points_.at((x + y) >> 1, (x - y) >> 1);
+  const SpreadPoint sample = points_.at(x, y);
   const int light = DirectLight::choose(parts_, sample.a);
   Shadow& shadow = rays_[ray_count_++];
   shadow = {light, p, lights_.shadow_ray(light, lifted(position, look.point.face_normal), sample.b, sample.c)};
@@ -170,7 +173,7 @@ void TileShader::shade_apart(const PixelTile& tile, std::size_t first) {
     }
     const Look& own = looks[k] = look(tile.rays[i], hit);
     const bool shared = lit != nullptr && lit_instance == hit.instance && lit->reflection.roughness == own.reflection.roughness &&
-                        lit->point.normal.dot(own.point.normal) > kSameNormal && near_in_depth(lit->depth, hit.distance);
+                        lit->point.normal.dot(own.point.normal) > kSameNormal && near_in_depth(lit->depth, hit.distance, kQuad);
     if (!shared) {
       lights_.irradiate(own.point, own.reflection, own.v, parts_);
       lit = &own;

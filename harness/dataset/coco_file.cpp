@@ -68,6 +68,7 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
   entry["hall"] = hall;
   entry["kind"] = image.kind;
   entry["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
+  if (!image.distortion.is_none()) entry["distortion"] = coefficients(image.distortion);
   entry["X_WC"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
   images_.add(entry.dump());
   for (const ImageLabel& label : image.labels.labels) {
@@ -84,6 +85,8 @@ void CocoFile::add(const ImageRecord& image, const std::string& hall) {
     annotation["visible"] = rounded(label.visible);
     annotation["occluded"] = rounded(label.occluded);
     annotation["truncated"] = rounded(label.truncated);
+    annotation["crosses_camera_plane"] = label.crosses_camera_plane;
+    annotation["leaves_margin"] = label.leaves_margin;
     annotation["object"] = label.object_id;
     annotations_.add(annotation.dump());
   }

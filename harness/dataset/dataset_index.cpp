@@ -47,26 +47,26 @@ DatasetSummary write_index(const fs::path& folder, int halls, int images, const 
   DatasetSummary summary;
   summary.classes = classes;
   summary.labels.assign(classes.size(), 0);
-  std::map<std::string, int> images_of_split, images_of_kind;
+  std::map<std::string, int> images_of_kind;
   std::map<std::string, std::string> lists, sums;
   std::map<std::string, std::optional<CocoFile>> coco;
-  if (formats.coco) {
-    make_folder(folder / "annotations");
-    for (const std::string& split : kSplits) {
-      coco[split].emplace(folder / "annotations" / ("instances_" + split + ".json"), classes,
-                          "synthetic pictures by waretwin " + std::string(kVersion) + ", " + split);
-    }
-  }
+  if (formats.coco) make_folder(folder / "annotations");
   std::vector<ImageRecord> shown;
   const int thumbnails = std::min(kThumbnails, images);
   for (int number = 0; number < halls; ++number) {
     const HallRecord record = read_hall_record(folder / record_name(number));
     sums[record_name(number).generic_string()] = sha256(read_file(folder / record_name(number)));
+    // Splits without pictures get no file: readers of a set would trip over it.
+    std::optional<CocoFile>& annotations = coco[record.split];
+    if (formats.coco && !annotations) {
+      annotations.emplace(folder / "annotations" / ("instances_" + record.split + ".json"), classes,
+                          "synthetic pictures by waretwin " + std::string(kVersion) + ", " + record.split);
+    }
     for (const ImageRecord& image : record.images) {
       // Evenly over the whole set.
       if (static_cast<int>(shown.size()) * images <= image.index * thumbnails) shown.push_back(image);
       ++summary.images;
-      ++images_of_split[record.split];
+      ++summary.splits[record.split];
       ++images_of_kind[image.kind];
       summary.empty += image.labels.labels.empty();
       for (const ImageLabel& label : image.labels.labels) {
@@ -79,11 +79,12 @@ DatasetSummary write_index(const fs::path& folder, int halls, int images, const 
       for (const LeftOut& object : image.labels.left_out) ++(object.why == LeftOut::Why::kSmall ? summary.small : summary.hidden);
       sums.insert(image.files.begin(), image.files.end());
       lists[record.split] += "images/" + image.name + ".jpg\n";
-      if (formats.coco) coco.at(record.split)->add(image, record.hall);
+      if (annotations) annotations->add(image, record.hall);
     }
   }
   if (formats.yolo) write_lists(folder, lists, classes, sums);
   for (auto& [split, file] : coco) {
+    if (!file) continue;
     file->finish();
     const std::string name = "annotations/instances_" + split + ".json";
     sums[name] = sha256(read_file(folder / name));
@@ -98,7 +99,7 @@ DatasetSummary write_index(const fs::path& folder, int halls, int images, const 
   manifest["images"] = summary.images;
   manifest["without_labels"] = summary.empty;
   manifest["halls"] = halls;
-  manifest["splits"] = images_of_split;
+  manifest["splits"] = summary.splits;
   manifest["views"] = images_of_kind;
   manifest["labels"] = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < classes.size(); ++i) manifest["labels"][classes[i]] = summary.labels[i];

@@ -53,13 +53,15 @@ void expect_camera(const std::string& name, const std::vector<std::unique_ptr<Ha
 
 // What makes two sets the same, as text: dataset.yaml.
 std::string description(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources,
-                        const DatasetFormats& formats) {
+                        const std::vector<std::string>& classes, const DatasetFormats& formats) {
   struct {
     DatasetConfig config;
     void visit(Fields& f) { f.group("dataset", config, "a set of training pictures"); }
   } tree{config};
   std::string about = std::string("formats") + (formats.yolo ? " yolo" : "") + (formats.coco ? " coco" : "");
   for (const auto& source : sources) about += "; " + source->description();
+  about += "; classes";
+  for (const std::string& name : classes) about += " " + name;
   return resolved_config([&](Fields& f) { tree.visit(f); }, about);
 }
 
@@ -73,8 +75,10 @@ void claim(const fs::path& folder, const std::string& text) {
   };
   if (is_ours()) return;
   const auto is_foreign = [](const fs::directory_entry& entry) { return !entry.path().filename().string().starts_with(".dataset."); };
-  if (fs::exists(folder) &&
-      (!fs::is_directory(folder) || std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_foreign))) {
+  std::error_code problem;
+  const auto has_foreign = [&] { return std::any_of(fs::directory_iterator(folder, problem), fs::directory_iterator(), is_foreign); };
+  if (fs::exists(folder) && (!fs::is_directory(folder) || has_foreign() || problem)) {
+    if (problem) throw Error(folder, "cannot be read: " + problem.message());
     if (is_ours()) return;  // another shard was faster
     throw Error(folder, "is no set of training pictures (it has no dataset.yaml); expected a new name or an empty folder");
   }
@@ -166,7 +170,7 @@ DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::
   WARETWIN_CHECK(!sources.empty() && shard.count > 0 && shard.index >= 0 && shard.index < shard.count, "halls and a shard of them");
   const std::vector<std::string> classes = classes_of(config, sources);
   expect_camera(config.camera.name, sources);
-  const std::string text = description(config, sources, formats);
+  const std::string text = description(config, sources, classes, formats);
   const std::string set = sha256(text);
   claim(folder, text);
   make_folder(folder / "halls");

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ struct DatasetProgress {
 };
 
 struct DatasetSummary {
-  int images = 0, empty = 0;  // of the whole set; 0 where other shards' halls are missing
+  int images = 0, empty = 0;          // of the whole set; 0 where other shards' halls are missing
+  std::map<std::string, int> splits;  // pictures of each that has some
   std::vector<std::string> classes;
   std::vector<int> labels;    // by class
   int hidden = 0, small = 0;  // visible objects without a label

@@ -13,6 +13,8 @@ constexpr float kFlat = 0.03f;  // what is lower is the floor, or painted on it
 
 }  // namespace
 
+double floor_of(double lowest) { return lowest < 0.0 && lowest > -1.0 ? 0.0 : lowest; }
+
 HallHeights::HallHeights(const Scene& scene, double cell_m, double below_m) : cell_(cell_m) {
   std::set<int> moving;
   for (const Mover& mover : scene.movers) moving.insert(mover.instances.begin(), mover.instances.end());
@@ -27,9 +29,7 @@ HallHeights::HallHeights(const Scene& scene, double cell_m, double below_m) : ce
     }
   }
   if (bounds.isEmpty()) return;
-  floor_ = static_cast<double>(bounds.min().z());
-  // Slabs reach below the floor that one walks on; of what is near z = 0, as the vehicle's own floor is.
-  if (floor_ < 0.0 && floor_ > -1.0) floor_ = 0.0;
+  floor_ = floor_of(static_cast<double>(bounds.min().z()));
   area_ = Eigen::AlignedBox2d(bounds.min().head<2>().cast<double>(), bounds.max().head<2>().cast<double>());
   // A hall on a wide plain: coarser cells, as many as fit into a few megabytes.
   constexpr double kMostCells = 4e6;

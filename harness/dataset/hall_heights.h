@@ -8,6 +8,10 @@
 
 namespace waretwin {
 
+// Where one walks in a hall whose lowest point is `lowest`: slabs reach below the floor; of what is near z = 0, as the vehicle's own floor
+// is.
+double floor_of(double lowest);
+
 class HallHeights {
  public:
   // Cells of `cell_m`. Surfaces higher than `below_m` above the lowest (lamps, the ceiling) do not count; movers do not either.

@@ -22,6 +22,7 @@ constexpr const char* kSensor = "dataset";
 constexpr Stamp kBetween = 700'000'000;  // of the hall's time, from picture to picture
 constexpr double kLatestStart_s = 20.0;  // the hall's time at the first one
 constexpr int kTriesForEmpty = 6;
+constexpr double kWidestField_deg = 170.0;
 
 Dice dice_for(const DatasetConfig& config, const char* purpose, int number) {
   return Dice(RandomStream(config.seed, kSensor, purpose, number));
@@ -47,8 +48,10 @@ CameraConfig varied_camera(const Hall& hall, const CameraVariation& config, Dice
   WARETWIN_CHECK(found != cameras.end(), "whoever makes a set has asked its halls for the camera");
   CameraConfig camera = found->second;
   const double field = 1.0 + dice.between(-config.field_share, config.field_share);
-  camera.horizontal_fov_deg *= field;
-  camera.vertical_fov_deg *= field;
+  // What a camera may be set to (camera_config.cpp), so that a wide one does not become none.
+  const auto wider = [field](double fov_deg) { return std::min(field * fov_deg, std::max(fov_deg, kWidestField_deg)); };
+  camera.horizontal_fov_deg = wider(camera.horizontal_fov_deg);
+  camera.vertical_fov_deg = wider(camera.vertical_fov_deg);
   camera.mount.x_m += dice.between(-config.place_m, config.place_m);
   camera.mount.y_m += dice.between(-config.place_m, config.place_m);
   camera.mount.z_m += dice.between(-config.height_m, config.height_m);
@@ -110,7 +113,8 @@ Photograph HallPhotographer::take(int index) {
     s.motion->advance_to(s.now + reach);
     s.motion->moment(s.now - reach, s.now + reach).show(*s.ray_caster);
   }
-  const ViewSampler views(*s.ray_caster, s.hall.scenario, s.camera_config.intrinsics(), s.camera_config.mount.X_BC(), s.config.views);
+  const ViewSampler views(*s.ray_caster, s.hall.scenario, s.camera_config.intrinsics(), s.camera_config.mount.X_BC(), s.config.views,
+                          s.classes);
   Dice dice = dice_for(s.config, "view", index);
   ViewKind kind = views.draw_kind(dice);
   for (int tried = 0;; ++tried) {
@@ -139,7 +143,9 @@ Photograph HallPhotographer::State::take(const View& view, int index) {
   out.record.index = index;
   out.record.name = name;
   out.record.kind = to_text(view.kind);
-  out.record.intrinsics = camera_config.intrinsics();
+  const Lens view_of_it = camera_config.view();
+  out.record.intrinsics = view_of_it.intrinsics();
+  out.record.distortion = view_of_it.distortion();
   out.record.X_WC = X_WC(now);
   const std::vector<ObjectView> seen = object_views(*ray_caster, camera.picture_rays(now, X_WC), images.instances);
   out.record.labels = label_objects(seen, images.instances, *hall.scene, classes, config.labels, config.polygon_tolerance_px);

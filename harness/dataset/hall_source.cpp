@@ -74,6 +74,7 @@ void add_scene(const Scene& scene, Digest& digest) {
   }
   add(digest, scene.ambient);
   add(digest, scene.background);
+  for (const TrueObject& object : scene.objects) digest.add(object.class_name);
   for (const Mover& mover : scene.movers) digest.add(mover.instances);
 }
 

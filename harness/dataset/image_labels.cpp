@@ -31,6 +31,8 @@ ImageLabels label_objects(const std::vector<ObjectView>& views, const cv::Mat& i
     label.occluded = view.occluded();
     label.truncated = view.truncated();
     label.amodal_box = view.amodal_box;
+    label.crosses_camera_plane = view.crosses_camera_plane;
+    label.leaves_margin = view.leaves_margin;
     const cv::Mat mask = instances(view.visible_box) == view.id;
     label.polygons = outlines(mask, view.visible_box.tl(), polygon_tolerance_px);
     label.runs = compressed_runs(run_lengths(mask, view.visible_box, instances.size()));

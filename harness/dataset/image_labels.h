@@ -17,10 +17,11 @@ struct ImageLabel {
   int class_index = 0;  // into the set's classes
   cv::Rect box;
   int area_px = 0;
-  double visible = 1.0, occluded = 0.0, truncated = 0.0;  // ObjectView
-  cv::Rect amodal_box;                                    // reaches beyond the picture
-  std::vector<std::vector<double>> polygons;              // harness/truth/mask_codes.h
-  std::string runs;                                       // compressed
+  double visible = 1.0, occluded = 0.0, truncated = 0.0;     // ObjectView
+  cv::Rect amodal_box;                                       // reaches beyond the picture
+  bool crosses_camera_plane = false, leaves_margin = false;  // ObjectView: there is more of it than these say
+  std::vector<std::vector<double>> polygons;                 // harness/truth/mask_codes.h
+  std::string runs;                                          // compressed
 };
 
 // A visible object without a label: neither to be found nor a mistake if found.

@@ -25,6 +25,7 @@ Json image_json(const ImageRecord& image) {
   json["kind"] = image.kind;
   json["size"] = {k.width, k.height};
   json["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
+  if (!image.distortion.is_none()) json["distortion"] = coefficients(image.distortion);
   json["X_WC"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
   json["left_out"] = Json::array();
   for (const LeftOut& object : image.labels.left_out) {
@@ -40,6 +41,8 @@ Json image_json(const ImageRecord& image) {
                               {"visible", label.visible},
                               {"occluded", label.occluded},
                               {"truncated", label.truncated},
+                              {"crosses_camera_plane", label.crosses_camera_plane},
+                              {"leaves_margin", label.leaves_margin},
                               {"amodal_box", box_json(label.amodal_box)},
                               {"polygons", label.polygons},
                               {"runs", label.runs}});
@@ -55,6 +58,10 @@ ImageRecord image_from(const Json& json) {
   image.kind = json.at("kind");
   const Json &size = json.at("size"), &k = json.at("intrinsics"), &x = json.at("X_WC");
   image.intrinsics = {size.at(0), size.at(1), k.at(0), k.at(1), k.at(2), k.at(3)};
+  if (json.contains("distortion")) {
+    const auto d = json.at("distortion").get<std::array<double, 8>>();
+    image.distortion = {.k1 = d[0], .k2 = d[1], .k3 = d[4], .k4 = d[5], .k5 = d[6], .k6 = d[7], .p1 = d[2], .p2 = d[3]};
+  }
   image.X_WC.translation() = Eigen::Vector3d(x.at(0), x.at(1), x.at(2));
   image.X_WC.linear() = Eigen::Quaterniond(x.at(6), x.at(3), x.at(4), x.at(5)).normalized().toRotationMatrix();
   for (const Json& entry : json.at("left_out")) {
@@ -70,6 +77,8 @@ ImageRecord image_from(const Json& json) {
     label.visible = entry.at("visible");
     label.occluded = entry.at("occluded");
     label.truncated = entry.at("truncated");
+    label.crosses_camera_plane = entry.at("crosses_camera_plane");
+    label.leaves_margin = entry.at("leaves_margin");
     label.amodal_box = box_from(entry.at("amodal_box"));
     label.polygons = entry.at("polygons").get<std::vector<std::vector<double>>>();
     label.runs = entry.at("runs");
@@ -82,6 +91,8 @@ ImageRecord image_from(const Json& json) {
 }  // namespace
 
 const char* to_text(LeftOut::Why why) { return why == LeftOut::Why::kSmall ? "small" : "hidden"; }
+
+std::array<double, 8> coefficients(const Distortion& d) { return {d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6}; }
 
 std::filesystem::path record_name(int number) {
   char name[32];
@@ -104,7 +115,7 @@ HallRecord read_hall_record(const std::filesystem::path& file) {
   try {
     const Json json = Json::parse(read_file(file));
     HallRecord record;
-    record.set = json.at("set");
+    record.set = json.value("set", "");  // sets of the first versions did not say; they are of other pictures, too
     record.hall = json.at("hall");
     record.number = json.at("number");
     record.split = json.at("split");

@@ -1,6 +1,7 @@
 // What is known of the pictures of one hall: written beside them when the hall is done, read back when lists and annotations are made.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,7 +10,7 @@
 
 #include "core/pose.h"
 #include "harness/dataset/image_labels.h"
-#include "sensors/intrinsics.h"
+#include "sensors/lens.h"
 
 namespace waretwin {
 
@@ -18,6 +19,7 @@ struct ImageRecord {
   std::string name;  // "000042"
   std::string kind;  // ViewKind
   Intrinsics intrinsics;
+  Distortion distortion;         // none where pictures are rectified
   Pose X_WC = Pose::Identity();  // at the stamp
   ImageLabels labels;
   std::map<std::string, std::string> files;  // names relative to the set's folder -> SHA-256
@@ -35,6 +37,9 @@ const char* to_text(LeftOut::Why why);
 
 // Name of hall `number`'s record in the set's folder.
 std::filesystem::path record_name(int number);
+
+// As OpenCV orders them: k1, k2, p1, p2, k3, k4, k5, k6.
+std::array<double, 8> coefficients(const Distortion& distortion);
 
 std::string to_json(const HallRecord& record);
 // Throws Error naming the file where it is no such record.

@@ -1,10 +1,12 @@
 #include "harness/dataset/view_sampler.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/error.h"
+#include "harness/dataset/hall_heights.h"
 
 namespace waretwin {
 
@@ -61,9 +63,18 @@ std::string to_text(ViewKind kind) {
 }
 
 ViewSampler::ViewSampler(const RayCaster& hall, const Scenario& scenario, const Intrinsics& intrinsics, const Pose& X_BC,
-                         const ViewConfig& config)
-    : hall_(hall), intrinsics_(intrinsics), X_BC_(X_BC), config_(config), route_(scenario.robot) {
-  bounds_ = hall.bounds().cast<double>();
+                         const ViewConfig& config, const std::vector<std::string>& classes)
+    : hall_(hall),
+      intrinsics_(intrinsics),
+      X_BC_(X_BC),
+      config_(config),
+      route_(scenario.robot),
+      bounds_(hall.bounds().cast<double>()),
+      floor_(floor_of(bounds_.min().z())) {
+  const std::vector<TrueObject>& all = hall.scene().objects;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (std::find(classes.begin(), classes.end(), all[i].class_name) != classes.end()) objects_.push_back(static_cast<int>(i));
+  }
 }
 
 ViewKind ViewSampler::draw_kind(Dice& dice) const {
@@ -105,22 +116,21 @@ View ViewSampler::drifting(ViewKind kind, const Pose& X_WC, Dice& dice) const {
 }
 
 std::optional<View> ViewSampler::object_view(Dice& dice) const {
-  const std::vector<TrueObject>& objects = hall_.scene().objects;
-  if (objects.empty()) return {};
+  if (objects_.empty()) return {};
   const double half_field = std::atan(0.5 * intrinsics_.width / intrinsics_.fx);
   for (int i = 0; i < kTries; ++i) {
-    const int index = dice.whole(0, static_cast<int>(objects.size()) - 1);
-    const Cuboid& box = objects[static_cast<std::size_t>(index)].cuboid;
+    const int index = objects_[static_cast<std::size_t>(dice.whole(0, static_cast<int>(objects_.size()) - 1))];
+    const Cuboid& box = hall_.scene().objects[static_cast<std::size_t>(index)].cuboid;
     const double distance = dice.between(config_.distance_min_m, config_.distance_max_m),
                  bearing = dice.between(0.0, 2.0 * std::numbers::pi);
     const Eigen::Vector3d eye(box.centre.x() + distance * std::cos(bearing), box.centre.y() + distance * std::sin(bearing),
-                              bounds_.min().z() + dice.between(config_.height_min_m, config_.height_max_m));
+                              floor_ + dice.between(config_.height_min_m, config_.height_max_m));
     const Eigen::Vector3d way = box.centre - eye;
     // Not always in the middle: objects cut by the border are in the set, too.
     const double yaw = std::atan2(way.y(), way.x()) + dice.between(-0.8, 0.8) * half_field;
     const double pitch = -std::atan2(way.z(), way.head<2>().norm()) + dice.between(-0.4, 0.4) * half_field;
     const Pose X_WC = looking(eye, yaw, pitch, to_radians(dice.between(-config_.roll_deg, config_.roll_deg)));
-    if (!is_free(eye) || share_of(index, X_WC) < config_.least_share) continue;
+    if (!is_free(eye) || share_of({&index, 1}, X_WC) < config_.least_share) continue;
     return drifting(ViewKind::kObject, X_WC, dice);
   }
   return {};
@@ -129,10 +139,10 @@ std::optional<View> ViewSampler::object_view(Dice& dice) const {
 std::optional<View> ViewSampler::empty_view(Dice& dice) const {
   for (int i = 0; i < kTries; ++i) {
     const Eigen::Vector3d eye(dice.between(bounds_.min().x(), bounds_.max().x()), dice.between(bounds_.min().y(), bounds_.max().y()),
-                              bounds_.min().z() + dice.between(config_.height_min_m, config_.height_max_m));
+                              floor_ + dice.between(config_.height_min_m, config_.height_max_m));
     const Pose X_WC = looking(eye, dice.between(0.0, 2.0 * std::numbers::pi), to_radians(dice.between(-10.0, 50.0)),
                               to_radians(dice.between(-config_.roll_deg, config_.roll_deg)));
-    if (!is_free(eye) || share_of(-1, X_WC) > 0.0) continue;
+    if (!is_free(eye) || share_of(objects_, X_WC) > 0.0) continue;
     return drifting(ViewKind::kEmpty, X_WC, dice);
   }
   return {};
@@ -161,7 +171,7 @@ bool ViewSampler::is_free(const Eigen::Vector3d& p_W) const {
   return behind <= kMostInside * met;
 }
 
-double ViewSampler::share_of(int object, const Pose& X_WC) const {
+double ViewSampler::share_of(std::span<const int> objects, const Pose& X_WC) const {
   const int step = std::max(1, intrinsics_.width / kGridWidth);
   std::vector<Ray> rays;
   for (int v = step / 2; v < intrinsics_.height; v += step) {
@@ -177,7 +187,7 @@ double ViewSampler::share_of(int object, const Pose& X_WC) const {
   for (const Hit& hit : hits) {
     if (!hit.valid()) continue;
     const int seen = hall_.scene().instances[static_cast<std::size_t>(hit.instance)].object;
-    showing += object < 0 ? seen >= 0 : seen == object;
+    showing += seen >= 0 && std::find(objects.begin(), objects.end(), seen) != objects.end();
   }
   return static_cast<double>(showing) / static_cast<double>(rays.size());
 }

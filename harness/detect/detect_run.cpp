@@ -90,7 +90,7 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
   DetectRunResult result;
   std::vector<double> times_ms;
   DrawnNames drawn_names;
-  int found = 0;
+  int found = 0, others = 0;
   std::optional<StagedFolder> drawn;
   if (config.pictures) drawn.emplace(out / "pictures");
   write_file_by(out / "detections.json", [&](const fs::path& temporary) {
@@ -114,7 +114,7 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
       file.append((result.pictures == 0 ? "\n" : ",\n") + picture_json(image.name, colour.size(), drawn_name, detections));
       for (const Detection& d : detections) {
         ++result.detections[d.class_name];
-        if (scorer && !scorer->names(d.class_name)) ++result.other_detections;
+        if (scorer && !scorer->names(d.class_name)) ++others;
       }
       found += static_cast<int>(detections.size());
       ++result.pictures;
@@ -129,7 +129,10 @@ DetectRunResult detect_pictures(const fs::path& model, const LabelledSet& set, c
   else
     fs::remove_all(out / "pictures", ignored);  // check_place knows them to be ours
   result.median_ms = median(times_ms);
-  if (scorer) result.score = scorer->score({config.detect.confidence, config.score.match_iou});
+  if (scorer) {
+    result.score = scorer->score({config.detect.confidence, config.score.match_iou});
+    result.score->other_detections = others;
+  }
   return result;
 }
 

@@ -40,7 +40,6 @@ struct DetectRunResult {
   std::map<std::string, int> detections;  // by class, from detect.confidence on
   double median_ms = 0.0;                 // of detection, a picture
   std::optional<DetectionScore> score;    // of a labelled set
-  int other_detections = 0;               // of classes that the set does not name: in no score
 };
 
 using DetectProgress = std::function<void(double done, int pictures, int detections)>;

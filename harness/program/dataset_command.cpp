@@ -116,6 +116,10 @@ int dataset(const DatasetOptions& options) {
   for (std::size_t i = 0; i < summary.classes.size(); ++i)
     std::printf("  %-20s %6d labels\n", summary.classes[i].c_str(), summary.labels[i]);
   std::printf("visible but left out: %d mostly hidden, %d too small\n", summary.hidden, summary.small);
+  if (config.valid_share > 0.0 && summary.splits.count("valid") == 0) {
+    spdlog::info("no split 'valid', which training needs: {} pictures are of {} halls; a smaller dataset.images_per_hall makes more",
+                 summary.images, (summary.images + config.hall_size() - 1) / config.hall_size());
+  }
   std::cout << "set in " << options.out << " (waretwin train " << options.out << " --out DIR); contact_sheet.png shows some\n";
   return 0;
 }

@@ -69,13 +69,12 @@ int detect(DetectOptions options) {
     });
   }
   if (result.score) {
-    const DetectionRunFacts facts{options.model,    options.inputs.front(),
-                                  options.split,    std::min(config.score.ap_confidence, config.detect.confidence),
-                                  result.median_ms, result.other_detections};
+    const DetectionRunFacts facts{options.model, options.inputs.front(), options.split,
+                                  std::min(config.score.ap_confidence, config.detect.confidence), result.median_ms};
     write_file(fs::path(options.out) / "metrics.json", metrics_json(*result.score, facts));
     std::cout << metrics_table(*result.score, facts);
-    if (result.other_detections > 0) {
-      spdlog::info("{} detections are of classes that the set does not name: in no score", result.other_detections);
+    if (const int others = result.score->other_detections; others > 0) {
+      spdlog::info("{} detections are of classes that the set does not name: in no score", others);
     }
   } else {
     std::cout << result.pictures << (result.pictures == 1 ? " picture" : " pictures");

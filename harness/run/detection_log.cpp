@@ -14,15 +14,14 @@ void DetectionLogConfig::visit(Fields& f) {
 DetectionLog::DetectionLog(const Scene& scene, const DetectionLogConfig& config) : config_(config) {
   for (const TrueObject& object : scene.objects) {
     class_of_object_[object.id] = object.class_name;
-    class_index(object.class_name);
+    if (!class_index(object.class_name)) classes_.push_back(object.class_name);
   }
 }
 
-int DetectionLog::class_index(const std::string& name) {
+std::optional<int> DetectionLog::class_index(const std::string& name) const {
   const auto found = std::find(classes_.begin(), classes_.end(), name);
-  if (found != classes_.end()) return static_cast<int>(found - classes_.begin());
-  classes_.push_back(name);
-  return static_cast<int>(classes_.size()) - 1;
+  if (found == classes_.end()) return {};
+  return static_cast<int>(found - classes_.begin());
 }
 
 void DetectionLog::add(const RgbdFrame& frame, const std::vector<Detection>& detections, const std::vector<ObjectView>& views) {
@@ -33,7 +32,11 @@ void DetectionLog::add(const RgbdFrame& frame, const std::vector<Detection>& det
   line["detections"] = nlohmann::ordered_json::array();
   for (const Detection& d : detections) {
     line["detections"].push_back({{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}});
-    picture.detections.push_back({class_index(d.class_name), cv::Rect2d(d.box), static_cast<double>(d.score)});
+    if (const auto index = class_index(d.class_name)) {
+      picture.detections.push_back({*index, cv::Rect2d(d.box), static_cast<double>(d.score)});
+    } else {
+      ++other_detections_;
+    }
   }
   line["truth"] = nlohmann::ordered_json::array();
   for (const ObjectView& view : views) {
@@ -46,7 +49,7 @@ void DetectionLog::add(const RgbdFrame& frame, const std::vector<Detection>& det
                              {"box", {box.x, box.y, box.width, box.height}},
                              {"visible", std::round(view.visible() * 1e4) / 1e4},
                              {"ignored", ignored}});
-    picture.truth.push_back({class_index(name), cv::Rect2d(box), static_cast<double>(view.visible_px), ignored});
+    picture.truth.push_back({*class_index(name), cv::Rect2d(box), static_cast<double>(view.visible_px), ignored});
   }
   pictures_.push_back(std::move(picture));
   lines_ += line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -54,7 +57,9 @@ void DetectionLog::add(const RgbdFrame& frame, const std::vector<Detection>& det
 
 std::optional<DetectionScore> DetectionLog::score() const {
   if (pictures_.empty() || class_of_object_.empty()) return {};
-  return score_detections(pictures_, classes_, {.confidence = 0.0, .match_iou = config_.match_iou});
+  DetectionScore score = score_detections(pictures_, classes_, {.confidence = 0.0, .match_iou = config_.match_iou});
+  score.other_detections = other_detections_;
+  return score;
 }
 
 }  // namespace waretwin

@@ -31,17 +31,18 @@ class DetectionLog {
   // A line of JSON a frame: stamp_ns, sensor; detections (class, box, score); truth (id, class, box, visible; ignored where it need not be
   // found). Boxes are x, y, width, height in pixels.
   const std::string& lines() const { return lines_; }
-  // Nothing without frames, or without objects in the hall. Detections of classes that the hall has none of are wrong as any others.
+  // Nothing without frames, or without objects in the hall. Detections of classes that the hall has none of are counted and in no figure.
   // All detections count, whatever their score: the mapper has taken them.
   std::optional<DetectionScore> score() const;
 
  private:
-  int class_index(const std::string& name);
+  std::optional<int> class_index(const std::string& name) const;
 
   DetectionLogConfig config_;
   std::map<int, std::string> class_of_object_;
   std::vector<std::string> classes_;
   std::vector<ScoredPicture> pictures_;
+  int other_detections_ = 0;
   std::string lines_;
 };
 

@@ -83,7 +83,7 @@ std::string metrics_json(const DetectionScore& score, const DetectionRunFacts& f
   json["images"] = score.images;
   json["labels"] = score.label_count();
   json["ignored_labels"] = score.ignored_labels;
-  json["other_detections"] = facts.other_detections;
+  json["other_detections"] = score.other_detections;
   json["confidence"] = score.rules.confidence;
   json["match_iou"] = score.rules.match_iou;
   json["ap_confidence"] = facts.collect_confidence;

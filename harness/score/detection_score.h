@@ -15,6 +15,7 @@ struct DetectionScore {
   std::vector<int> labels;  // a class: boxes to be found
   int images = 0;
   int ignored_labels = 0;
+  int other_detections = 0;  // of classes that the truth does not name, in no figure; set by whoever left them out
   ThresholdRules rules;
   CocoScore coco;
   PascalScore pascal;
@@ -32,7 +33,6 @@ struct DetectionRunFacts {
   std::string model, dataset, split;
   double collect_confidence = 0.0;  // detections from this score on were collected for the curves
   double median_ms = 0.0;           // of detection, a picture
-  int other_detections = 0;         // of classes that the set does not name
 };
 
 // metrics.json: docs/detection.md says what each key means.

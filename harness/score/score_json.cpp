@@ -117,6 +117,7 @@ std::string score_json(const RunScore& score) {
     json["detection"] = {{"frames", score.detection->images},
                          {"labels", score.detection->label_count()},
                          {"ignored_labels", score.detection->ignored_labels},
+                         {"other_detections", score.detection->other_detections},
                          {"match_iou", score.detection->rules.match_iou}};
     add_figures(json["detection"], *score.detection);
   }

@@ -9,7 +9,7 @@
 namespace waretwin::train {
 namespace {
 
-constexpr std::string_view kMagic = "waretwin training 1\n";
+constexpr std::string_view kMagic = "waretwin training 2\n";
 
 template <class T>
 void put(std::string& bytes, const T& value) {
@@ -24,7 +24,8 @@ void put_text(std::string& bytes, const std::string& text) {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file), bytes_(read_file(file)) {
-    if (take(kMagic.size(), "its first line") != kMagic) throw Error(file_, "no checkpoint of a training");
+    if (take(kMagic.size(), "its first line") != kMagic)
+      throw Error(file_, "no checkpoint of a training by this version; expected one, or no --resume");
   }
   std::string_view take(std::uint64_t size, const char* what) {
     if (size > bytes_.size() - at_) throw Error(file_, std::string("ends within ") + what + "; expected a whole checkpoint");
@@ -60,6 +61,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   put(bytes, checkpoint.best_fitness);
   put(bytes, checkpoint.best_ap50);
   put(bytes, checkpoint.seconds);
+  put(bytes, checkpoint.validation_seconds);
   put_text(bytes, checkpoint.best_weights);
   put(bytes, static_cast<std::uint64_t>(checkpoint.tensors.size()));
   for (const at::Tensor& tensor : checkpoint.tensors) {
@@ -80,6 +82,7 @@ void read_checkpoint(const std::filesystem::path& file, Checkpoint& checkpoint) 
   in.get(checkpoint.best_fitness, "its counters");
   in.get(checkpoint.best_ap50, "its counters");
   in.get(checkpoint.seconds, "its counters");
+  in.get(checkpoint.validation_seconds, "its counters");
   checkpoint.best_weights = in.text("its best weights");
   std::uint64_t count = 0;
   in.get(count, "its tensors");

@@ -95,8 +95,8 @@ int train_by(const TrainOptions& options) {
   return kSuccess;
 }
 
-// libtorch's threads wait for each other by turning in circles, which takes the processor from whoever they wait for: beside the thread
-// that makes pictures ready a step takes up to three times as long. OpenMP reads its settings before main.
+// libtorch's threads wait for each other by turning in circles, which takes the processor from whoever they wait for: beside another
+// program, or the threads that make pictures ready, a step takes up to three times as long. OpenMP reads its settings before main.
 void wait_asleep(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr) return;
   setenv("OMP_WAIT_POLICY", "passive", 1);

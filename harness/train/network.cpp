@@ -41,20 +41,22 @@ Network::Network(const NetworkPlan& plan, std::uint64_t seed) : plan_(plan), lay
 
 void Network::renew_statistics(const at::Tensor& pictures, int index) {
   const at::NoGradGuard no_gradients;
-  forward(pictures, true, 1.0 / (index + 1));
+  forward(pictures, {.training = true, .momentum = 1.0 / (index + 1)});
 }
 
-at::Tensor Network::forward(const at::Tensor& pictures, bool training, double momentum) {
+at::Tensor Network::forward(const at::Tensor& pictures, const Pass& pass) {
   std::vector<at::Tensor> outputs;
-  at::Tensor x = pictures;
+  at::Tensor x = pictures.to(pass.type);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const LayerPlan& layer = plan_.layers[i];
     const Parameters& p = layers_[i];
     switch (layer.kind) {
       case LayerPlan::Kind::kConvolution:
-        x = at::conv2d(x, p.weight, layer.normalised ? at::Tensor() : p.bias, layer.stride, layer.size / 2);
-        if (layer.normalised) {
-          x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, training, momentum, kEpsilon, false);
+        if (!layer.normalised) {
+          x = at::conv2d(x.to(at::kFloat), p.weight, p.bias, layer.stride, layer.size / 2);
+        } else {
+          x = at::conv2d(x, p.weight.to(pass.type), {}, layer.stride, layer.size / 2);
+          x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, pass.training, pass.momentum, kEpsilon, false);
           at::leaky_relu_(x, kSlope);
         }
         break;

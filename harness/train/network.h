@@ -15,9 +15,13 @@ class Network {
   // Weights drawn as He et al. (2015) say, from the seed alone.
   Network(const NetworkPlan& plan, std::uint64_t seed);
 
-  // (N, 3, height, width), RGB from 0 to 1, to (N, anchors * (5 + classes), rows, columns). In training, batch normalisation takes the
-  // batch's own statistics and follows them.
-  at::Tensor forward(const at::Tensor& pictures, bool training) { return forward(pictures, training, kStatisticsMomentum); }
+  // (N, 3, height, width), RGB from 0 to 1, to (N, anchors * (5 + classes), rows, columns), as a detector computes it.
+  at::Tensor detect(const at::Tensor& pictures) { return forward(pictures, {}); }
+
+  // The same for learning: batch normalisation takes the batch's own statistics and follows them. What the normalised layers take and give
+  // has the given type (float32 or bfloat16), and so have gradients on their way; the weights that are kept and changed, statistics and the
+  // last layer are float32 (mixed precision, Micikevicius et al. 2018).
+  at::Tensor learn(const at::Tensor& pictures, at::ScalarType type) { return forward(pictures, {true, kStatisticsMomentum, type}); }
 
   // Finds means and variances anew for the present weights, as the mean over batches: what follows a training is not quite theirs. Call
   // with index 0, 1, 2 ... for each batch.
@@ -40,7 +44,12 @@ class Network {
 
  private:
   static constexpr double kStatisticsMomentum = 0.05;
-  at::Tensor forward(const at::Tensor& pictures, bool training, double momentum);
+  struct Pass {
+    bool training = false;
+    double momentum = 0.0;  // of followed statistics
+    at::ScalarType type = at::kFloat;
+  };
+  at::Tensor forward(const at::Tensor& pictures, const Pass& pass);
 
   NetworkPlan plan_;
   std::vector<Parameters> layers_;

@@ -17,12 +17,16 @@ PictureCache::PictureCache(const LabelledSet& set, const cv::Size& size, std::in
 }
 
 Sample PictureCache::get(std::size_t index) {
-  if (!kept_[index].empty()) return {kept_[index], boxes_[index]};
+  {
+    const std::lock_guard lock(mutex_);
+    if (!kept_[index].empty()) return {kept_[index], boxes_[index]};
+  }
   cv::Mat small(size_, CV_8UC3);
   resize_picture(read_colour_image(files_[index]), small);
   cv::cvtColor(small, small, cv::COLOR_BGR2RGB);
   const auto bytes = static_cast<std::int64_t>(small.total() * small.elemSize());
-  if (bytes <= free_bytes_) {
+  const std::lock_guard lock(mutex_);
+  if (kept_[index].empty() && bytes <= free_bytes_) {
     free_bytes_ -= bytes;
     kept_[index] = small;
   }

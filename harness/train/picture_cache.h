@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 #include "harness/labelled/labelled_set.h"
@@ -9,7 +10,7 @@
 
 namespace waretwin::train {
 
-// Not for several threads at once.
+// For several threads at once.
 class PictureCache {
  public:
   // Pictures are stretched to `size`. Those that would take more than `bytes` in all are decoded again each time.
@@ -18,13 +19,13 @@ class PictureCache {
   std::size_t count() const { return boxes_.size(); }
   // Throws Error for a file that is no picture. The picture is shared: nobody may write into it.
   Sample get(std::size_t index);
-  const std::vector<TruthBox>& boxes(std::size_t index) const { return boxes_[index]; }
 
  private:
   cv::Size size_;
   std::int64_t free_bytes_;
   std::vector<std::filesystem::path> files_;
   std::vector<std::vector<TruthBox>> boxes_;
+  std::mutex mutex_;  // of the kept pictures
   std::vector<cv::Mat> kept_;
 };
 

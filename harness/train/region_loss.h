@@ -16,7 +16,7 @@ struct RegionLoss {
   double box = 0.0, object = 0.0, classes = 0.0;
 };
 
-// `output` as Network::forward gives it; `truth` holds a picture's boxes each. An object is learned by the cell that holds its centre: by
+// `output` as Network::learn gives it; `truth` holds a picture's boxes each. An object is learned by the cell that holds its centre: by
 // the anchor of the best shape and by those that reach anchor_iou. Their objectness learns the IoU that the box has, all others 0, except
 // where a prediction overlaps an object by ignore_iou or lies half in an ignored box.
 RegionLoss region_loss(const at::Tensor& output, const std::vector<std::vector<TruthBox>>& truth, const NetworkPlan& plan,

@@ -45,6 +45,8 @@ void TrainConfig::visit(Fields& f) {
   f("warm_up", warm_up, "steps in which the learning rate grows from 0", {.min = 0, .max = 1000000});
   f("small_share", small_share, "share of the training, at its start, with smaller pictures, which take less time", {.min = 0, .max = 1});
   f("small_scale", small_scale, "size of these against the input", {.min = 0.1, .max = 1});
+  f("precision", precision, "of what lies between the layers; auto = bfloat16 where the processor multiplies it faster",
+    {.choices = {"auto", "float32", "bfloat16"}});
   f("weight_decay", weight_decay, "of convolution weights, as AdamW has it", {.min = 0, .max = 10});
   f("average_decay", average_decay, "of the moving average of weights that is validated and written", {.min = 0, .max = 0.99999});
   f("largest_gradient", largest_gradient, "norm to which gradients are cut", {.min = 1e-6, .max = 1e9});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <opencv2/core/types.hpp>
+#include <string>
 
 #include "core/fields.h"
 
@@ -36,6 +37,7 @@ struct TrainConfig {
   double learning_rate = 0.003, final_rate = 0.02;
   int warm_up = 200;                             // steps
   double small_share = 0.5, small_scale = 0.67;  // of the training, at its start; of the input's sides
+  std::string precision = "auto";                // float32, bfloat16
   double weight_decay = 0.05;
   double average_decay = 0.999;
   double largest_gradient = 10.0;

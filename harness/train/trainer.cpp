@@ -21,6 +21,7 @@
 #include "harness/train/epoch_loader.h"
 #include "harness/train/network.h"
 #include "harness/train/optimiser.h"
+#include "harness/train/precision.h"
 #include "harness/train/region_loss.h"
 #include "mapper/detect/resized_picture.h"
 
@@ -66,13 +67,19 @@ std::string config_text(TrainConfig config) {
   return write_config([&](Fields& f) { f.group("train", config, "training of a detector"); });
 }
 
+// With what is left to the machine decided, so that train.yaml and the checkpoint say it.
+TrainConfig decided(TrainConfig config) {
+  config.precision = type_of(config.precision) == at::kBFloat16 ? "bfloat16" : "float32";
+  return config;
+}
+
 // What must be the same for a training to go on: all but how long it takes.
-std::string lasting_text(const TrainConfig& config, const LabelledSet& set, const LabelledSet& valid) {
+std::string lasting_text(const std::string& name, const TrainConfig& config, const LabelledSet& set, const LabelledSet& valid) {
   TrainConfig lasting = config;
   lasting.epochs = lasting.patience = 0;
   lasting.minutes = lasting.cache_mb = 0.0;
-  std::string text = config_text(lasting) + "pictures: " + std::to_string(set.images.size()) + "\nclasses:";
-  for (const std::string& name : set.classes) text += " " + name;
+  std::string text = "name: " + name + "\n" + config_text(lasting) + "pictures: " + std::to_string(set.images.size()) + "\nclasses:";
+  for (const std::string& class_name : set.classes) text += " " + class_name;
   // Boxes make the anchors, which the weights are learned for.
   Digest boxes;
   for (const LabelledSet* part : {&set, &valid}) {
@@ -96,8 +103,16 @@ void check_same(const fs::path& file, const std::string& before, const std::stri
     const auto plain = [](const std::string& line) {
       return line.substr(std::min(line.size(), line.find_first_not_of(' '))).substr(0, 80);
     };
+    const auto key = [](const std::string& line) { return line.substr(0, line.find(':')); };
+    if (key(old_line) != key(new_line)) throw Error(file, "was begun by another version of waretwin; expected the same to --resume");
     throw Error(file, "was begun with '" + plain(old_line) + "', now it is '" + plain(new_line) + "'; expected the same to --resume");
   }
+}
+
+void remove_file(const fs::path& file) {
+  std::error_code problem;
+  fs::remove(file, problem);
+  if (problem) throw Error(file, "cannot be replaced: " + problem.message());
 }
 
 at::Tensor as_tensor(const std::vector<Sample>& batch) {
@@ -114,7 +129,8 @@ class Training {
   Training(const TrainingRequest& request, const TrainingHooks& hooks)
       : request_(request),
         hooks_(hooks),
-        config_(request.config),
+        config_(decided(request.config)),
+        type_(type_of(config_.precision)),
         train_(read_split(request.dataset, "train")),
         valid_(read_split(request.dataset, "valid")),
         plan_(make_plan()),
@@ -133,6 +149,7 @@ class Training {
 
   TrainingSummary run() {
     make_folder(request_.out);
+    expect_no_other_model();
     load();
     write_file(request_.out / "train.yaml",
                "# waretwin " + std::string(kVersion) + ", dataset " + request_.dataset.string() + "\n" + config_text(config_));
@@ -161,13 +178,26 @@ class Training {
   }
 
   fs::path checkpoint_file() const { return request_.out / "checkpoint"; }
+  fs::path model_file(const char* ending) const { return request_.out / (request_.name + ending); }
+
+  // Whoever takes a model by its folder expects one.
+  void expect_no_other_model() const {
+    std::error_code problem;
+    for (const fs::directory_entry& entry : fs::directory_iterator(request_.out, problem)) {
+      const fs::path& file = entry.path();
+      if (file.extension() != ".weights" || file.stem() == request_.name) continue;
+      throw Error(request_.out,
+                  "holds the model '" + file.stem().string() + "'; expected --name " + file.stem().string() + " or another --out");
+    }
+    if (problem) throw Error(request_.out, "cannot be read: " + problem.message());
+  }
 
   // How much of the training is over: the schedule of learning rate and augmentation. By time only where a limit is set.
   double share_done(double step) const {
     double share = config_.epochs > 0 ? step / (static_cast<double>(config_.epochs) * steps_per_epoch_) : 0.0;
     if (config_.minutes > 0.0) {
       // The time that validation takes is kept for it.
-      const double seconds = state_.seconds + validation_seconds_ + (training_ ? seconds_since(epoch_start_) : 0.0);
+      const double seconds = state_.seconds + state_.validation_seconds + (training_ ? seconds_since(epoch_start_) : 0.0);
       share = std::max(share, seconds / (60.0 * config_.minutes));
     }
     return std::min(share, 1.0);
@@ -184,17 +214,18 @@ class Training {
   }
 
   void load() {
-    state_.config = lasting_text(config_, train_, valid_);
+    state_.config = lasting_text(request_.name, config_, train_, valid_);
     state_.log = "epoch,box_loss,object_loss,class_loss,ap,ap50,ap75,side_error_px,learning_rate,seconds\n";
     for (const std::vector<at::Tensor>& tensors :
          {network_.learned(), network_.followed(), average_.learned(), average_.followed(), optimiser_.state()}) {
       state_.tensors.insert(state_.tensors.end(), tensors.begin(), tensors.end());
     }
-    if (!fs::exists(checkpoint_file())) return;
     if (!request_.resume) {
-      fs::remove(checkpoint_file());
+      // No old model stands beside a new train.yaml.
+      for (const fs::path& file : {checkpoint_file(), model_file(".weights"), model_file(".cfg"), model_file(".names")}) remove_file(file);
       return;
     }
+    if (!fs::exists(checkpoint_file())) return;
     check_same(checkpoint_file(), checkpoint_config(checkpoint_file()), state_.config);
     read_checkpoint(checkpoint_file(), state_);
     optimiser_.steps = state_.steps;
@@ -284,7 +315,7 @@ class Training {
   void step(const std::vector<Sample>& batch, const NetworkPlan& plan, EpochResult& result) {
     std::vector<std::vector<TruthBox>> truth;
     for (const Sample& sample : batch) truth.push_back(sample.boxes);
-    const RegionLoss loss = region_loss(network_.forward(as_tensor(batch), true), truth, plan, config_);
+    const RegionLoss loss = region_loss(network_.learn(as_tensor(batch), type_), truth, plan, config_);
     if (!std::isfinite(loss.total.item<double>())) {
       throw Error("the loss is no number after " + std::to_string(state_.steps) + " steps; expected a smaller train.learning_rate");
     }
@@ -319,7 +350,7 @@ class Training {
       std::vector<Sample> batch;
       for (std::size_t i = first; i < std::min(count, first + static_cast<std::size_t>(config_.batch)); ++i)
         batch.push_back(valid_pictures_.get(i));
-      const at::Tensor output = average_.forward(as_tensor(batch), false).contiguous(at::MemoryFormat::Contiguous);
+      const at::Tensor output = average_.detect(as_tensor(batch)).contiguous(at::MemoryFormat::Contiguous);
       for (std::size_t i = 0; i < batch.size(); ++i) {
         found.push_back(region_boxes(output[static_cast<std::int64_t>(i)].data_ptr<float>(), plan_, kLeastScore, kNmsIou));
         truth.push_back(batch[i].boxes);
@@ -335,14 +366,14 @@ class Training {
     balanced_score_ = balanced_score(found, truth, classes, 0.5f);
     // Pictures are taken for 16:9, as those of the camera that the figure is about.
     result.side_error_px = median_side_error(found, truth, 1280, 720);
-    validation_seconds_ = seconds_since(start);
+    state_.validation_seconds = seconds_since(start);
   }
 
   // By the AP over all IoU, and among the late epochs: with few pictures to validate on, AP50 jumps up and down by a tenth, and the best of
   // many such numbers says little.
   void keep_if_best(EpochResult& result) {
     const bool late = share_done(static_cast<double>(state_.steps)) >= 1.0 - kLateShare, first_late = late && state_.best_is_late == 0;
-    if (state_.best_epoch >= 0 && !first_late && result.ap < state_.best_fitness) return;
+    if (state_.best_epoch >= 0 && !first_late && result.ap <= state_.best_fitness) return;
     result.best = true;
     state_.best_is_late = late ? 1 : 0;
     state_.best_fitness = result.ap;
@@ -353,20 +384,21 @@ class Training {
   }
 
   TrainingSummary write_model() const {
-    const auto file = [&](const char* ending) { return request_.out / (request_.name + ending); };
     // Old weights never stand beside a new description.
-    fs::remove(file(".weights"));
+    remove_file(model_file(".weights"));
     std::string names;
     for (const std::string& name : train_.classes) names += name + "\n";
-    write_file(file(".cfg"), darknet_cfg(plan_));
-    write_file(file(".names"), names);
-    write_file(file(".weights"), state_.best_weights);
-    return {static_cast<int>(state_.epochs_done), static_cast<int>(state_.best_epoch), state_.best_ap50, state_.seconds, file(".weights")};
+    write_file(model_file(".cfg"), darknet_cfg(plan_));
+    write_file(model_file(".names"), names);
+    write_file(model_file(".weights"), state_.best_weights);
+    return {static_cast<int>(state_.epochs_done), static_cast<int>(state_.best_epoch), state_.best_ap50, state_.seconds,
+            model_file(".weights")};
   }
 
   const TrainingRequest& request_;
   const TrainingHooks& hooks_;
   TrainConfig config_;
+  at::ScalarType type_;  // of what lies between the layers while learning
   LabelledSet train_, valid_;
   NetworkPlan plan_;
   Network network_, average_;
@@ -376,7 +408,6 @@ class Training {
   int steps_per_epoch_ = 1;
   Clock::time_point epoch_start_;
   bool training_ = false;
-  double validation_seconds_ = 0.0;
   double balanced_score_ = 0.5;  // of the last validation
 };
 

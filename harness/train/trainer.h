@@ -54,8 +54,8 @@ struct TrainingSummary {
 };
 
 // Writes OUT/NAME.cfg, NAME.names, NAME.weights at the end, train.yaml at the start, log.csv and checkpoint after each epoch. Uses
-// libtorch's present number of threads and one more that makes pictures ready. Throws Error for datasets without pictures or boxes, for a
-// checkpoint of other settings, and where the loss stops being a number.
+// libtorch's present number of threads, and as many of parallel_for in turn. Throws Error for datasets without pictures or boxes, for an
+// OUT with a model of another name, for a checkpoint of other settings, and where the loss stops being a number.
 TrainingSummary train_detector(const TrainingRequest& request, const TrainingHooks& hooks);
 
 }  // namespace waretwin::train

@@ -87,6 +87,30 @@ TEST(ClosedLoop, GivesTheSameDigestAtAnyNumberOfThreads) {
   EXPECT_EQ(truth, read_file(folder.path() / "4/truth_frames.jsonl"));
 }
 
+// As it comes: no truth in the loop, boxes from the shipped model.
+TEST(ClosedLoop, FindsTheConveyorsWithItsOwnDetector) {
+  const TemporaryFolder folder;
+  const Json score = run("--set sensors.cameras.camera.rate_hz=2", folder.path() / "run");
+  ASSERT_TRUE(score.is_object());
+  EXPECT_EQ(score["stages"]["detector"], "yolo");
+  EXPECT_EQ(score["summary"]["matched"], 4);
+  EXPECT_EQ(score["summary"]["mapped"], 4) << "and nothing else";
+  EXPECT_GE(score["summary"]["mean_iou3d"].get<double>(), 0.6);
+  const Json& detection = score["detection"];
+  EXPECT_GE(detection["recall"].get<double>(), 0.6);
+  EXPECT_GE(detection["precision"].get<double>(), 0.8);
+  EXPECT_EQ(detection["other_detections"], 0);
+  const std::string lines = read_file(folder.path() / "run/detections.jsonl");
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), score["frames"]["mapped"].get<int>()) << "a line a mapped frame";
+  EXPECT_NE(read_file(folder.path() / "run/report.html").find("Detections in the mapped frames"), std::string::npos);
+
+  const std::string part = "--set sensors.cameras.camera.rate_hz=2 --frames 12 --threads ";
+  const Json one = run(part + "1", folder.path() / "1"), two = run(part + "2", folder.path() / "2");
+  ASSERT_TRUE(one.is_object() && two.is_object());
+  EXPECT_EQ(one["digest"], two["digest"]);
+  EXPECT_EQ(read_file(folder.path() / "1/detections.jsonl"), read_file(folder.path() / "2/detections.jsonl"));
+}
+
 TEST(ClosedLoop, ChangesWithTheSeedOnly) {
   const TemporaryFolder folder;
   const std::string options = "--profile paper --detector truth --frames 16 ";

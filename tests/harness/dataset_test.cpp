@@ -22,6 +22,7 @@
 #include "harness/dataset/view_sampler.h"
 #include "harness/labelled/labelled_set.h"
 #include "sim/motion/hall_motion.h"
+#include "tests/support/coco_masks.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
 
@@ -223,7 +224,15 @@ TEST_F(MadeSet, CocoFilesHoldWhatReadersNeed) {
         EXPECT_GE(polygon.size(), 6u);
         EXPECT_EQ(polygon.size() % 2, 0u);
       }
-      EXPECT_EQ(annotation.at("rle").at("size"), (Json{image.at("height"), image.at("width")}));
+      const cv::Size size(image.at("width"), image.at("height"));
+      EXPECT_EQ(annotation.at("rle").at("size"), (Json{size.height, size.width}));
+      const std::string name = fs::path(image.at("file_name").get<std::string>()).stem();
+      const cv::Mat mask =
+          cv::imread((set() / "instances" / (name + ".png")).string(), cv::IMREAD_UNCHANGED) == annotation.at("object").get<int>();
+      EXPECT_EQ(cv::norm(test::from_runs(test::read_runs(annotation.at("rle").at("counts")), size), mask, cv::NORM_INF), 0.0);
+      // Polygons leave out points up to a pixel from the line, of small objects, too.
+      const cv::Mat filled = test::filled(annotation.at("segmentation"), size);
+      EXPECT_LT(cv::countNonZero(filled != mask), 0.25 * annotation.at("area").get<double>() + 12) << name;
       EXPECT_EQ(annotation.at("amodal_bbox").size(), 4u);
       for (const char* share : {"visible", "occluded", "truncated"}) {
         EXPECT_GE(annotation.at(share).get<double>(), 0.0);
@@ -274,12 +283,14 @@ TEST_F(MadeSet, ChecksumsAreThoseOfTheFiles) {
   EXPECT_EQ(std::system(check.c_str()), 0);
 }
 
-TEST_F(MadeSet, TrueDepthFitsTheInstances) {
+TEST_F(MadeSet, DepthIsInMillimetresAllOver) {
   const HallRecord record = read_hall_record(set() / record_name(0));
   for (const ImageRecord& image : record.images) {
     const cv::Mat depth = cv::imread((set() / "depth" / (image.name + ".png")).string(), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(depth.type(), CV_16UC1);
     EXPECT_GT(cv::countNonZero(depth), depth.size().area() * 9 / 10) << "a closed room";
+    EXPECT_GT(cv::mean(depth)[0], 300.0);
+    EXPECT_LT(cv::mean(depth)[0], 15000.0);
   }
 }
 
@@ -362,7 +373,7 @@ TEST(ViewSampler, LooksAtObjectsFromTheOpenAndAwayFromThemOnDemand) {
   const RayCaster caster(hall.scene);
   const CameraConfig camera = hall.scenario.sensors.cameras.begin()->second;
   const ViewConfig config;
-  const ViewSampler views(caster, hall.scenario, camera.intrinsics(), camera.mount.X_BC(), config);
+  const ViewSampler views(caster, hall.scenario, camera.intrinsics(), camera.mount.X_BC(), config, {"conveyor"});
   Dice dice(RandomStream(1, "test", "views"));
   std::map<ViewKind, int> kinds;
   for (int i = 0; i < 1000; ++i) ++kinds[views.draw_kind(dice)];
@@ -391,6 +402,69 @@ TEST(ViewSampler, LooksAtObjectsFromTheOpenAndAwayFromThemOnDemand) {
       EXPECT_LT((view.X_WC(4'000'000).translation() - view.X_WC(-4'000'000).translation()).norm(), 0.008 * config.speed_mps + 1e-9);
     }
   }
+}
+
+TEST(ViewSampler, CaresForTheAskedClassesAlone) {
+  const Hall hall = a_cell();
+  auto scene = std::make_shared<Scene>(*hall.scene);
+  ASSERT_GT(scene->objects.size(), 1u);
+  scene->objects.front().class_name = "press";
+  const RayCaster caster(scene);
+  const CameraConfig camera = hall.scenario.sensors.cameras.begin()->second;
+  const ViewSampler presses(caster, hall.scenario, camera.intrinsics(), camera.mount.X_BC(), {}, {"press"});
+  Dice dice(RandomStream(1, "test", "views"));
+  const Eigen::Vector3d& press = scene->objects.front().cuboid.centre;
+  for (int i = 0; i < 10; ++i) {
+    const auto view = presses.draw(ViewKind::kObject, dice);
+    ASSERT_TRUE(view);
+    EXPECT_LT((view->X_WC(0).translation() - press).head<2>().norm(), ViewConfig().distance_max_m + 1e-6);
+    EXPECT_TRUE(presses.draw(ViewKind::kEmpty, dice)) << "the other objects may be in sight";
+  }
+  EXPECT_FALSE(ViewSampler(caster, hall.scenario, camera.intrinsics(), camera.mount.X_BC(), {}, {}).draw(ViewKind::kObject, dice));
+}
+
+TEST(HallHeights, TheFloorIsWhereOneWalks) {
+  EXPECT_EQ(floor_of(-0.3), 0.0) << "a slab";
+  EXPECT_EQ(floor_of(0.4), 0.4);
+  EXPECT_EQ(floor_of(-7.5), -7.5) << "a hall far below";
+}
+
+// Darknet's layout has no word for a lens, COCO's file has.
+TEST(Dataset, SaysWhatTheCameraIs) {
+  const test::TemporaryFolder folder;
+  DatasetConfig config = small_set();
+  config.count = 1;
+  const auto made = [&](const std::string& name, const std::string& rectify) {
+    std::vector<std::unique_ptr<HallSource>> sources;
+    sources.push_back(generated_source("flat", 5,
+                                       {{"sensors.cameras.camera.width", "192"},
+                                        {"sensors.cameras.camera.height", "108"},
+                                        {"sensors.cameras.camera.colour.rectify", rectify}}));
+    make_dataset(config, sources, folder.path() / name, {}, {});
+    const ImageRecord record = read_hall_record(folder.path() / name / record_name(0)).images.at(0);
+    const Json image = Json::parse(read_file(folder.path() / name / "annotations" / "instances_train.json")).at("images").at(0);
+    EXPECT_EQ(image.at("intrinsics").at(0), record.intrinsics.fx);
+    EXPECT_EQ(image.contains("distortion"), rectify == "false");
+    return record;
+  };
+  const ImageRecord plain = made("plain", "true"), bent = made("bent", "false");
+  EXPECT_TRUE(plain.distortion.is_none());
+  EXPECT_FALSE(bent.distortion.is_none());
+  // The bent picture shows more than the rectified one, at a shorter focal length.
+  EXPECT_LT(bent.intrinsics.fx, 0.99 * plain.intrinsics.fx);
+  EXPECT_EQ(coefficients(bent.distortion).at(0), bent.distortion.k1);
+}
+
+TEST(Dataset, SplitsWithoutPicturesHaveNoFile) {
+  const test::TemporaryFolder folder;
+  DatasetConfig config = small_set();
+  config.count = 2;
+  config.images_per_hall = 1;
+  config.test_share = 0.0;
+  const DatasetSummary summary = make_dataset(config, small_halls(), folder.path() / "set", {.yolo = false, .coco = true}, {});
+  EXPECT_EQ(summary.splits, (std::map<std::string, int>{{"train", 1}, {"valid", 1}}));
+  EXPECT_EQ(splits_of(folder.path() / "set"), (std::vector<std::string>{"train", "valid"}));
+  EXPECT_EQ(read_labelled_set(folder.path() / "set", "all").images.size(), 2u);
 }
 
 TEST(Appearance, ChangesLooksAndNothingElse) {

@@ -46,13 +46,16 @@ TEST(DetectionLog, CountsWhatIsToBeFoundAndNothingElse) {
   // Found; a rack taken for a conveyor; a conveyor of which little is visible need not be found.
   log.add(frame_at(1), {found("conveyor", {12, 20, 98, 50}, 0.9f), found("conveyor", {300, 300, 60, 60}, 0.8f)},
           {view_of(1, {10, 20, 100, 50}, 1.0), view_of(2, {300, 300, 60, 60}, 0.9)});
-  log.add(frame_at(2), {}, {view_of(1, {10, 20, 100, 50}, 0.2)});
+  // Of a class that the hall has none of: nobody says that it is not there.
+  log.add(frame_at(2), {found("person", {10, 20, 100, 50}, 0.9f)}, {view_of(1, {10, 20, 100, 50}, 0.2)});
   log.add(frame_at(3), {found("conveyor", {0, 0, 40, 40}, 0.6f)}, {view_of(1, {10, 20, 100, 50}, 0.2)});
   const auto score = log.score();
   ASSERT_TRUE(score);
   EXPECT_EQ(score->images, 3);
   EXPECT_EQ(score->labels, (std::vector<int>{1, 1}));
   EXPECT_EQ(score->ignored_labels, 2);
+  EXPECT_EQ(score->other_detections, 1);
+  EXPECT_EQ(score->classes, (std::vector<std::string>{"conveyor", "rack"}));
   const ThresholdFigures& conveyor = score->at_threshold.classes[0];
   EXPECT_EQ(conveyor.right, 1);
   EXPECT_EQ(conveyor.wrong, 2) << "the rack, and a place where nothing is";
@@ -72,6 +75,7 @@ TEST(DetectionLog, CountsWhatIsToBeFoundAndNothingElse) {
   EXPECT_EQ(rows[0]["detections"][0]["box"], (Json{12.0, 20.0, 98.0, 50.0}));
   EXPECT_EQ(rows[0]["truth"][1]["class"], "rack");
   EXPECT_EQ(rows[0]["truth"][1]["ignored"], false);
+  EXPECT_EQ(rows[1]["detections"][0]["class"], "person");
   EXPECT_EQ(rows[1]["truth"][0]["ignored"], true);
 }
 

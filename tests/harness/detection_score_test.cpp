@@ -427,7 +427,7 @@ TEST(DetectionScore, MetricsHoldWhatToolsReadAndNoNan) {
   const std::vector<ScoredPicture> pictures = {{{truth_at(0)}, {found_at(0, 0.9), found_at(5, 0.2)}}};
   const DetectionScore score = score_detections(pictures, {"chair", "table", "caf\xe9"}, {});  // the last in Latin-1
   EXPECT_EQ(score.label_count(), 1);
-  const DetectionRunFacts facts{"model", "set", "test", 0.001, 12.5, 3};
+  const DetectionRunFacts facts{"model", "set", "test", 0.001, 12.5};
   const Json json = Json::parse(metrics_json(score, facts));
   for (const char* key : {"ap50", "ap", "precision", "recall"}) EXPECT_NEAR(json[key].get<double>(), 1.0, 1e-12) << key;
   EXPECT_EQ(json["images"], 1);

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/random.h"
+#include "tests/support/coco_masks.h"
 
 namespace waretwin {
 namespace {
@@ -25,56 +26,6 @@ cv::Mat random_mask(std::uint64_t seed, int width, int height) {
   return smooth > 0.5;
 }
 
-// Even-odd at the pixels' centres, straight from the definition.
-cv::Mat filled(const std::vector<std::vector<double>>& polygons, const cv::Size& size) {
-  cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);
-  for (const std::vector<double>& polygon : polygons) {
-    for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) {
-        const double u = x + 0.5, v = y + 0.5;
-        bool inside = false;
-        for (std::size_t i = 0, j = polygon.size() - 2; i < polygon.size(); j = i, i += 2) {
-          const double xi = polygon[i], yi = polygon[i + 1], xj = polygon[j], yj = polygon[j + 1];
-          if ((yi > v) != (yj > v) && u < (xj - xi) * (v - yi) / (yj - yi) + xi) inside = !inside;
-        }
-        if (inside) mask.at<std::uint8_t>(y, x) = 255;
-      }
-    }
-  }
-  return mask;
-}
-
-// The reader's side of COCO's text, as its format says: letters from '0' on, five bits and one that says whether more follow, the fifth
-// bit of the last is the sign.
-std::vector<int> read_runs(const std::string& text) {
-  std::vector<int> runs;
-  for (std::size_t at = 0; at < text.size();) {
-    long value = 0;
-    int shift = 0;
-    for (bool more = true; more; ++at, shift += 5) {
-      const long letter = text[at] - 48;
-      value |= (letter & 0x1f) << shift;
-      more = (letter & 0x20) != 0;
-      if (!more && (letter & 0x10) != 0) value |= -1L << (shift + 5);
-    }
-    if (runs.size() > 2) value += runs[runs.size() - 2];
-    runs.push_back(static_cast<int>(value));
-  }
-  return runs;
-}
-
-cv::Mat from_runs(const std::vector<int>& runs, const cv::Size& size) {
-  cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);
-  int at = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (int k = 0; k < runs[i]; ++k, ++at) {
-      if (i % 2 == 1) mask.at<std::uint8_t>(at % size.height, at / size.height) = 255;
-    }
-  }
-  EXPECT_EQ(at, size.area());
-  return mask;
-}
-
 bool same(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::countNonZero(a != b) == 0; }
 
 TEST(MaskCodes, OutlinesFillToTheMask) {
@@ -84,7 +35,7 @@ TEST(MaskCodes, OutlinesFillToTheMask) {
     const cv::Size size(60, 50);
     cv::Mat placed = cv::Mat::zeros(size, CV_8UC1);
     mask.copyTo(placed(cv::Rect(7, 11, 41, 29)));
-    EXPECT_TRUE(same(filled(outlines(mask, {7, 11}, 0.0), size), placed));
+    EXPECT_TRUE(same(test::filled(outlines(mask, {7, 11}, 0.0), size), placed));
   }
 }
 
@@ -95,7 +46,7 @@ TEST(MaskCodes, OutlinesOfASquareAndARing) {
   mask.at<std::uint8_t>(2, 2) = 0;
   const auto ring = outlines(mask, {0, 0}, 0.0);
   ASSERT_EQ(ring.size(), 1u) << "one piece, its hole joined by a seam";
-  EXPECT_TRUE(same(filled(ring, mask.size()), mask));
+  EXPECT_TRUE(same(test::filled(ring, mask.size()), mask));
 }
 
 TEST(MaskCodes, ToleranceLeavesOutStairs) {
@@ -104,7 +55,7 @@ TEST(MaskCodes, ToleranceLeavesOutStairs) {
   const auto exact = outlines(mask, {0, 0}, 0.0), coarse = outlines(mask, {0, 0}, 1.0);
   ASSERT_EQ(coarse.size(), 1u);
   EXPECT_LT(coarse[0].size(), exact[0].size() / 4);
-  const int off = cv::countNonZero(filled(coarse, mask.size()) != mask);
+  const int off = cv::countNonZero(test::filled(coarse, mask.size()) != mask);
   EXPECT_LT(off, cv::countNonZero(mask) / 50);
 }
 
@@ -117,12 +68,12 @@ TEST(MaskCodes, RunsReadBack) {
     cv::Mat placed = cv::Mat::zeros(size, CV_8UC1);
     mask.copyTo(placed(place));
     const std::vector<int> runs = run_lengths(mask, place, size);
-    EXPECT_TRUE(same(from_runs(runs, size), placed));
-    EXPECT_EQ(read_runs(compressed_runs(runs)), runs);
+    EXPECT_TRUE(same(test::from_runs(runs, size), placed));
+    EXPECT_EQ(test::read_runs(compressed_runs(runs)), runs);
   }
   // Numbers of every length and sign.
   const std::vector<int> runs = {0, 15, 16, 31, 32, 1000, 1023, 1, 1024, 1000000, 3, 2};
-  EXPECT_EQ(read_runs(compressed_runs(runs)), runs);
+  EXPECT_EQ(test::read_runs(compressed_runs(runs)), runs);
 }
 
 }  // namespace

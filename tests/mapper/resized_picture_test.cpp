@@ -18,7 +18,8 @@ TEST(ResizedPicture, KeepsTheLightOfThinThings) {
   cv::Mat picture(720, 1280, CV_8UC3, cv::Scalar::all(20));
   for (int x = 5; x < picture.cols; x += 37) picture.col(x).setTo(cv::Scalar::all(220));
   const double expected = cv::mean(picture)[0];
-  for (const cv::Size size : {cv::Size(1120, 640), cv::Size(640, 360), cv::Size(576, 320), cv::Size(448, 256), cv::Size(160, 96)}) {
+  for (const cv::Size size : {cv::Size(1120, 640), cv::Size(640, 360), cv::Size(576, 320), cv::Size(448, 256), cv::Size(160, 96),
+                              cv::Size(320, 640), cv::Size(320, 800)}) {
     const cv::Mat out = resized(picture, size);
     EXPECT_NEAR(cv::mean(out)[0], expected, 0.6) << size;
     for (int x = 5; x < picture.cols - 37; x += 37) {

@@ -31,7 +31,9 @@ TEST_F(TrainCommand, LeavesADetector) {
     EXPECT_TRUE(fs::exists(out_ / name)) << name;
   }
   EXPECT_NE(read_file(out_ / "train.yaml").find("seed: 3"), std::string::npos);
-  const test::ProgramResult quiet = test::waretwin("train " + test::in_quotes(set_) + to_out() + " --quiet" + kSmall + "1");
+  const std::string again = "train " + test::in_quotes(set_) + to_out() + " --quiet" + kSmall + "1";
+  EXPECT_ONE_LINE(test::waretwin(again), "holds the model 'shapes'");  // a detector is named by its folder
+  const test::ProgramResult quiet = test::waretwin(again + " --name shapes");
   EXPECT_EQ(quiet.exit_code, 0);
   EXPECT_EQ(quiet.err, "");
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/dnn.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "core/files.h"
 #include "core/random.h"
@@ -12,7 +13,9 @@
 #include "harness/train/region_boxes.h"
 #include "harness/train/sample.h"
 #include "mapper/detect/darknet_cfg.h"
+#include "mapper/detect/resized_picture.h"
 #include "mapper/detect/yolo_detector.h"
+#include "tests/end_to_end/program.h"
 #include "tests/support/test_data.h"
 #include "tests/train/darknet_peer.h"
 
@@ -63,7 +66,7 @@ class Export : public ::testing::TestWithParam<int> {
   at::Tensor raw() {
     const at::NoGradGuard no_gradients;
     cv::Mat input = blob();
-    return network_.forward(at::from_blob(input.data, {1, 3, 96, 160}).clone(), false).contiguous(at::MemoryFormat::Contiguous);
+    return network_.detect(at::from_blob(input.data, {1, 3, 96, 160}).clone()).contiguous(at::MemoryFormat::Contiguous);
   }
 
   NetworkPlan plan_;
@@ -136,6 +139,38 @@ TEST_P(Export, DarknetGivesTheSameNumbersAndBoxes) {
   ASSERT_GT(boxes.size(), 3u);
   for (const ScoredBox& box : boxes)
     EXPECT_TRUE(holds(inside, box)) << box.share << ", class " << box.class_index << ", score " << box.score;
+#endif
+}
+
+// Not a drawn network, but the one that everybody uses, where a conveyor is to be seen.
+TEST(ShippedModel, DarknetSeesTheSameConveyors) {
+#ifndef WARETWIN_DARKNET
+  GTEST_SKIP() << "needs the package darknet when it is built";
+#else
+  const fs::path model = test::repository() / "mapper/detect/models/conveyor", cfg = model / "conveyor.cfg",
+                 weights = model / "conveyor.weights";
+  EXPECT_LE(fs::file_size(weights), 4'000'000u);
+  const DarknetSummary summary = read_darknet_cfg(cfg);
+  const test::TemporaryFolder folder;
+  const fs::path view = folder.path() / "view.png";
+  ASSERT_EQ(test::waretwin("render " + test::agiprobot() + " --quiet --pose=-3.0,-0.6,1.4,-45,25 --out " + test::in_quotes(view)).exit_code, 0);
+  const cv::Mat picture = cv::imread(view.string());
+  ASSERT_FALSE(picture.empty());
+  cv::Mat small(summary.height, summary.width, CV_8UC3);
+  resize_picture(picture, small);
+  const cv::Mat input = cv::dnn::blobFromImage(small, 1.0 / 255.0, small.size(), cv::Scalar(), true, false);
+  const test::DarknetAnswer theirs = test::ask_darknet(cfg, weights, {input.ptr<float>(), input.ptr<float>() + input.total()}, 0.25f);
+  const std::vector<Detection> ours = YoloDetector(model, {.confidence = 0.5}).detect(picture);
+  ASSERT_FALSE(ours.empty());
+  for (const Detection& one : ours) {
+    const auto columns = static_cast<float>(picture.cols), rows = static_cast<float>(picture.rows);
+    const cv::Rect2f share(one.box.x / columns, one.box.y / rows, one.box.width / columns, one.box.height / rows);
+    EXPECT_TRUE(std::any_of(theirs.boxes.begin(), theirs.boxes.end(),
+                            [&](const ScoredBox& box) {
+                              return std::abs(box.score - one.score) < 1e-3f && box_iou(box.share & cv::Rect2f(0, 0, 1, 1), share) > 0.99f;
+                            }))
+        << one.box << ", score " << one.score;
+  }
 #endif
 }
 

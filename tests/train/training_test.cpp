@@ -92,11 +92,36 @@ TEST_F(Training, AResumedOneEndsLikeAnUninterruptedOne) {
   EXPECT_EQ(again.epochs, 3);
   EXPECT_TRUE(weights(whole) == weights(parts));
 
+  parts.name = "others";
+  EXPECT_ERROR(train_detector(parts, {}), "holds the model 'shapes'");
+  parts.name = "shapes";
   parts.config.batch = 4;
   EXPECT_ERROR(train_detector(parts, {}), "checkpoint", "batch: 8", "batch: 4");
   write_file(parts.out / "checkpoint", read_file(parts.out / "checkpoint").substr(0, 100000));
   parts.config.batch = 8;
   EXPECT_ERROR(train_detector(parts, {}), "checkpoint", "ends within");
+}
+
+TEST_F(Training, OneThatEndedByTheClockHasEnded) {
+  TrainingRequest wanted = request("out");
+  wanted.config.minutes = 0.02;
+  wanted.config.epoch_pictures = 24;
+  const TrainingSummary summary = train_detector(wanted, {});
+  const std::string first = weights(wanted);
+  wanted.resume = true;
+  EXPECT_EQ(train_detector(wanted, {}).epochs, summary.epochs);
+  EXPECT_TRUE(weights(wanted) == first);
+}
+
+TEST_F(Training, ACheckpointIsOfOneModel) {
+  TrainingRequest wanted = request("out");
+  wanted.config.epoch_pictures = 24;
+  wanted.config.epochs = 1;
+  train_detector(wanted, {});
+  fs::remove(wanted.out / "shapes.weights");
+  wanted.name = "others";
+  wanted.resume = true;
+  EXPECT_ERROR(train_detector(wanted, {}), "name: shapes", "name: others");
 }
 
 TEST_F(Training, TheSeedAloneDecides) {
