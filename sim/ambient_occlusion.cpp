@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kReach = 1.6f;  // metres: what is nearer blocks light, less so the farther it is
 constexpr int kRadius = 4;      // of the smoothing, in pixels of the half-size picture
+static_assert(2 * kRadius == SpreadPoints::kTile, "what is averaged holds every point once");
 constexpr int kRowsAtOnce = 4, kColumnsAtOnce = 16;
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "sim/path_tracer.h"
 #include "sim/pixel_random.h"
 #include "sim/pixel_tile.h"
+#include "sim/spread_points.h"
 #include "sim/tile_shader.h"
 
 namespace waretwin {
@@ -22,6 +23,7 @@ namespace waretwin {
 namespace {
 
 constexpr int kShadowRadius = 4;  // of the smoothing, in pixels
+static_assert(2 * kShadowRadius == SpreadPoints::kTile, "what is averaged holds every point once");
 constexpr int kPathsAtOnce = 64;
 
 // Into whichever pictures were asked for.

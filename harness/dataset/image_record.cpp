@@ -115,7 +115,7 @@ HallRecord read_hall_record(const std::filesystem::path& file) {
   try {
     const Json json = Json::parse(read_file(file));
     HallRecord record;
-    record.set = json.value("set", "");  // sets of the first versions did not say; they are of other pictures, too
+    record.set = json.at("set");
     record.hall = json.at("hall");
     record.number = json.at("number");
     record.split = json.at("split");

@@ -184,10 +184,10 @@ class Training {
   void expect_no_other_model() const {
     std::error_code problem;
     for (const fs::directory_entry& entry : fs::directory_iterator(request_.out, problem)) {
-      const fs::path& file = entry.path();
-      if (file.extension() != ".weights" || file.stem() == request_.name) continue;
-      throw Error(request_.out,
-                  "holds the model '" + file.stem().string() + "'; expected --name " + file.stem().string() + " or another --out");
+      const std::string name = entry.path().stem().string(), ending = entry.path().extension().string();
+      const bool is_model = ending == ".cfg" || ending == ".weights" || ending == ".onnx";
+      if (!is_model || name.starts_with('.') || name == request_.name) continue;  // a dot: what a kill left half-written
+      throw Error(request_.out, "holds the model '" + name + "'; expected another --out, or --name " + name + " to replace it");
     }
     if (problem) throw Error(request_.out, "cannot be read: " + problem.message());
   }
@@ -220,15 +220,27 @@ class Training {
          {network_.learned(), network_.followed(), average_.learned(), average_.followed(), optimiser_.state()}) {
       state_.tensors.insert(state_.tensors.end(), tensors.begin(), tensors.end());
     }
-    if (!request_.resume) {
-      // No old model stands beside a new train.yaml.
-      for (const fs::path& file : {checkpoint_file(), model_file(".weights"), model_file(".cfg"), model_file(".names")}) remove_file(file);
+    if (!request_.resume || !fs::exists(checkpoint_file())) {
+      remove_earlier();
       return;
     }
-    if (!fs::exists(checkpoint_file())) return;
     check_same(checkpoint_file(), checkpoint_config(checkpoint_file()), state_.config);
     read_checkpoint(checkpoint_file(), state_);
     optimiser_.steps = state_.steps;
+    if (state_.best_is_late != 0 && share_done(static_cast<double>(state_.steps)) < 1.0 - kLateShare) {
+      // Longer than it was meant to be: its own late epochs decide, and patience is for those that come.
+      state_.best_is_late = 0;
+      state_.best_epoch = state_.epochs_done;
+    }
+  }
+
+  // No old model stands beside a new train.yaml. What is in a folder without one is not ours.
+  void remove_earlier() const {
+    if (!fs::exists(request_.out / "train.yaml")) return;
+    for (const fs::path& file :
+         {checkpoint_file(), request_.out / "log.csv", model_file(".weights"), model_file(".cfg"), model_file(".names")}) {
+      remove_file(file);
+    }
   }
 
   void save() { write_checkpoint(checkpoint_file(), state_); }

@@ -104,12 +104,15 @@ TEST_F(Training, AResumedOneEndsLikeAnUninterruptedOne) {
 
 TEST_F(Training, OneThatEndedByTheClockHasEnded) {
   TrainingRequest wanted = request("out");
-  wanted.config.minutes = 0.02;
+  wanted.config.epochs = 2;
   wanted.config.epoch_pictures = 24;
   const TrainingSummary summary = train_detector(wanted, {});
   const std::string first = weights(wanted);
+  // As if the clock had ended it: less is left than another validation takes.
+  wanted.config.epochs = 0;
+  wanted.config.minutes = (summary.seconds + 1e-4) / 60.0;
   wanted.resume = true;
-  EXPECT_EQ(train_detector(wanted, {}).epochs, summary.epochs);
+  EXPECT_EQ(train_detector(wanted, {}).epochs, 2);
   EXPECT_TRUE(weights(wanted) == first);
 }
 
@@ -118,10 +121,26 @@ TEST_F(Training, ACheckpointIsOfOneModel) {
   wanted.config.epoch_pictures = 24;
   wanted.config.epochs = 1;
   train_detector(wanted, {});
-  fs::remove(wanted.out / "shapes.weights");
+  for (const char* name : {"shapes.weights", "shapes.cfg"}) fs::remove(wanted.out / name);
   wanted.name = "others";
   wanted.resume = true;
   EXPECT_ERROR(train_detector(wanted, {}), "name: shapes", "name: others");
+}
+
+TEST_F(Training, WhatIsNotItsOwnStays) {
+  TrainingRequest wanted = request("out");
+  wanted.config.epochs = 1;
+  wanted.config.epoch_pictures = 24;
+  make_folder(wanted.out);
+  write_file(wanted.out / "other.cfg", "[net]");
+  EXPECT_ERROR(train_detector(wanted, {}), "holds the model 'other'", "another --out");
+  fs::remove(wanted.out / "other.cfg");
+  write_file(wanted.out / ".other.partial-7.weights", "half");  // of a killed program
+  write_file(wanted.out / "shapes.names", "mine");
+  TrainingHooks hooks;
+  hooks.started = [&](const TrainingSet&) { EXPECT_EQ(read_file(wanted.out / "shapes.names"), "mine"); };
+  train_detector(wanted, hooks);
+  EXPECT_EQ(read_file(wanted.out / "shapes.names"), "orange\nblue\n");
 }
 
 TEST_F(Training, TheSeedAloneDecides) {
