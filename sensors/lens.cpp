@@ -16,6 +16,18 @@ Eigen::Vector2d Distortion::apply(const Eigen::Vector2d& xy) const {
   return {s * x + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x), s * y + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
 }
 
+Eigen::Matrix2d Distortion::slope(const Eigen::Vector2d& xy) const {
+  const double x = xy.x(), y = xy.y(), r2 = xy.squaredNorm();
+  const double above = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3)), below = 1.0 + r2 * (k4 + r2 * (k5 + r2 * k6));
+  const double s = above / below;
+  // By r^2, twice: the gradient of r^2 is 2 (x, y).
+  const double ds = 2.0 * ((k1 + r2 * (2.0 * k2 + 3.0 * r2 * k3)) - s * (k4 + r2 * (2.0 * k5 + 3.0 * r2 * k6))) / below;
+  const double across = ds * x * y + 2.0 * p1 * x + 2.0 * p2 * y;
+  Eigen::Matrix2d slope;
+  slope << s + ds * x * x + 2.0 * p1 * y + 6.0 * p2 * x, across, across, s + ds * y * y + 6.0 * p1 * y + 2.0 * p2 * x;
+  return slope;
+}
+
 void Distortion::visit(Fields& f) {
   const FieldRule rule = {.min = -100, .max = 100};
   f("k1", k1, "radial distortion, numerator, r^2", rule);
@@ -51,17 +63,11 @@ std::optional<Eigen::Vector3d> Lens::ray(double u, double v) const {
   const Eigen::Vector3d straight = intrinsics_.ray(u, v);
   if (distortion_.is_none()) return straight;
   const Eigen::Vector2d wanted = straight.head<2>();
-  // Newton's method with difference quotients; converges in four or five steps where a ray exists.
+  // Newton's method; converges in four or five steps where a ray exists.
   Eigen::Vector2d xy = wanted;
   for (int i = 0; i < 30; ++i) {
     const Eigen::Vector2d miss = distortion_.apply(xy) - wanted;
-    constexpr double kStep = 1e-6;
-    Eigen::Matrix2d slope;
-    slope.col(0) =
-        (distortion_.apply(xy + Eigen::Vector2d(kStep, 0.0)) - distortion_.apply(xy - Eigen::Vector2d(kStep, 0.0))) / (2.0 * kStep);
-    slope.col(1) =
-        (distortion_.apply(xy + Eigen::Vector2d(0.0, kStep)) - distortion_.apply(xy - Eigen::Vector2d(0.0, kStep))) / (2.0 * kStep);
-    const Eigen::Vector2d step = slope.inverse() * miss;
+    const Eigen::Vector2d step = distortion_.slope(xy).inverse() * miss;
     if (!step.allFinite()) return std::nullopt;
     // A step beyond the point's own distance from the axis would leave the branch that holds the image.
     const double longest = 0.5 + 0.5 * xy.norm();

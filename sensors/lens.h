@@ -19,6 +19,7 @@ struct Distortion {
 
   bool is_none() const;
   Eigen::Vector2d apply(const Eigen::Vector2d& xy) const;
+  Eigen::Matrix2d slope(const Eigen::Vector2d& xy) const;  // d apply / d xy
   void visit(Fields& f);
 };
 

@@ -9,7 +9,7 @@
 namespace waretwin::train {
 namespace {
 
-constexpr std::string_view kMagic = "waretwin training 2\n";
+constexpr std::string_view kMagic = "waretwin training 3\n";
 
 template <class T>
 void put(std::string& bytes, const T& value) {
@@ -58,6 +58,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   put(bytes, checkpoint.steps);
   put(bytes, checkpoint.best_epoch);
   put(bytes, checkpoint.best_is_late);
+  put(bytes, checkpoint.patience_from);
   put(bytes, checkpoint.best_fitness);
   put(bytes, checkpoint.best_ap50);
   put(bytes, checkpoint.seconds);
@@ -79,6 +80,7 @@ void read_checkpoint(const std::filesystem::path& file, Checkpoint& checkpoint) 
   in.get(checkpoint.steps, "its counters");
   in.get(checkpoint.best_epoch, "its counters");
   in.get(checkpoint.best_is_late, "its counters");
+  in.get(checkpoint.patience_from, "its counters");
   in.get(checkpoint.best_fitness, "its counters");
   in.get(checkpoint.best_ap50, "its counters");
   in.get(checkpoint.seconds, "its counters");

@@ -13,6 +13,7 @@ struct Checkpoint {
   std::string config;  // what the training depends on; must be the same to go on
   std::string log;     // log.csv so far
   std::int64_t epochs_done = 0, steps = 0, best_epoch = -1, best_is_late = 0;
+  std::int64_t patience_from = 0;                                                        // the epoch that patience is counted from
   double best_fitness = -1.0, best_ap50 = 0.0, seconds = 0.0, validation_seconds = 0.0;  // the last one: of the last epoch
   std::string best_weights;                                                              // bytes of the weights file of the best epoch
   std::vector<at::Tensor> tensors;                                                       // network, average, optimiser

@@ -12,4 +12,8 @@ namespace waretwin::train {
 // that is seen. `object_shift` is added to every objectness before its logistic function: it moves all scores, and none past another.
 std::string darknet_weights(const Network& network, std::int64_t pictures_seen, double object_shift = 0.0);
 
+// The other way round. Variances are 1, folded into the scales: before learning, Network::unfold_statistics. Throws Error for bytes that
+// are not of this network.
+void read_darknet_weights(const std::string& bytes, Network& network);
+
 }  // namespace waretwin::train

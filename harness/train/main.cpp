@@ -43,7 +43,7 @@ std::string time_left(double seconds) {
 }
 
 train::TrainingRequest request_of(const TrainOptions& options) {
-  train::TrainingRequest request{options.dataset, options.out, options.name, options.resume, {}};
+  train::TrainingRequest request{options.dataset, options.out, options.name, options.resume, options.from, {}};
   train::TrainConfig& config = request.config;
   if (options.name.empty() || options.name.find('/') != std::string::npos)
     throw Error("--name '" + options.name + "'; expected a file's name");
@@ -71,6 +71,7 @@ int train_by(const TrainOptions& options) {
   hooks.started = [&](const train::TrainingSet& set) {
     spdlog::info("{} pictures with {} boxes of {} classes, {} to validate; {:.0f} MB decoded; {} parameters, anchors' mean IoU {:.2f}",
                  set.train_pictures, set.boxes, set.classes, set.valid_pictures, set.cache_mb, set.parameters, set.anchor_iou);
+    if (!options.from.empty()) spdlog::info("starts from {}, which knows {} of {} classes", options.from, set.known_classes, set.classes);
     if (set.epochs_done > 0) spdlog::info("goes on after epoch {}", set.epochs_done);
   };
   hooks.progress = [&](const train::TrainingProgress& now) {

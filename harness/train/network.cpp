@@ -16,6 +16,15 @@ at::Tensor drawn_weights(const LayerPlan& layer, int inputs, std::uint64_t seed,
   return weight.contiguous(at::MemoryFormat::ChannelsLast);
 }
 
+// `x`: what the layer's normalisation takes. Its variance is the unbiased one, as libtorch follows it.
+void unfold(const at::Tensor& x, const Network::Parameters& p) {
+  const at::Tensor variance = x.var(std::vector<std::int64_t>{0, 2, 3}, true);
+  at::Tensor scale = p.scale;
+  scale.mul_(((variance + Network::kEpsilon) / (p.variance + Network::kEpsilon)).sqrt());
+  at::Tensor kept = p.variance;
+  kept.copy_(variance);
+}
+
 }  // namespace
 
 Network::Network(const NetworkPlan& plan, std::uint64_t seed) : plan_(plan), layers_(plan.layers.size()) {
@@ -44,6 +53,11 @@ void Network::renew_statistics(const at::Tensor& pictures, int index) {
   forward(pictures, {.training = true, .momentum = 1.0 / (index + 1)});
 }
 
+void Network::unfold_statistics(const at::Tensor& pictures) {
+  const at::NoGradGuard no_gradients;
+  forward(pictures, {.unfolding = true});
+}
+
 at::Tensor Network::forward(const at::Tensor& pictures, const Pass& pass) {
   std::vector<at::Tensor> outputs;
   at::Tensor x = pictures.to(pass.type);
@@ -56,6 +70,7 @@ at::Tensor Network::forward(const at::Tensor& pictures, const Pass& pass) {
           x = at::conv2d(x.to(at::kFloat), p.weight, p.bias, layer.stride, layer.size / 2);
         } else {
           x = at::conv2d(x, p.weight.to(pass.type), {}, layer.stride, layer.size / 2);
+          if (pass.unfolding) unfold(x, p);
           x = at::batch_norm(x, p.scale, p.bias, p.mean, p.variance, pass.training, pass.momentum, kEpsilon, false);
           at::leaky_relu_(x, kSlope);
         }

@@ -27,6 +27,10 @@ class Network {
   // with index 0, 1, 2 ... for each batch.
   void renew_statistics(const at::Tensor& pictures, int index);
 
+  // Finds variances anew and changes the scales against them, so that detect() gives what it gave. Weights files have the variances folded
+  // into the scales, where learn(), which divides by a batch's own, would count them twice.
+  void unfold_statistics(const at::Tensor& pictures);
+
   const NetworkPlan& plan() const { return plan_; }
 
   struct Parameters {                  // of a convolution; those that its kind does not have are undefined
@@ -48,6 +52,7 @@ class Network {
     bool training = false;
     double momentum = 0.0;  // of followed statistics
     at::ScalarType type = at::kFloat;
+    bool unfolding = false;  // see unfold_statistics
   };
   at::Tensor forward(const at::Tensor& pictures, const Pass& pass);
 

@@ -10,9 +10,11 @@ bool has_fast_bfloat16() {
 #endif
 }
 
-at::ScalarType type_of(const std::string& precision) {
-  if (precision == "auto") return has_fast_bfloat16() ? at::kBFloat16 : at::kFloat;
-  return precision == "bfloat16" ? at::kBFloat16 : at::kFloat;
+std::string decided_precision(const std::string& precision) {
+  if (precision != "auto") return precision;
+  return has_fast_bfloat16() ? "bfloat16" : "float32";
 }
+
+at::ScalarType type_of(const std::string& decided) { return decided == "bfloat16" ? at::kBFloat16 : at::kFloat; }
 
 }  // namespace waretwin::train

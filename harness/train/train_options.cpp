@@ -14,6 +14,11 @@ void TrainOptions::add_to(CLI::App& command) {
       ->required()
       ->type_name("DIR");
   command.add_option("--name", name, "of the files: NAME.cfg, NAME.weights, NAME.names")->capture_default_str()->type_name("NAME");
+  command
+      .add_option("--from", from,
+                  "starts from this detector, which `train` made (a folder or a shipped model: conveyor), instead of from nothing; "
+                  "classes are matched by name, and the input may have another size")
+      ->type_name("MODEL");
   command.add_flag("--resume", resume, "goes on from the checkpoint in DIR, if there is one");
   command.add_option("--epochs", epochs, "an epoch shows every picture, few of them several times (default: 54,000 pictures in all)")
       ->type_name("N")
@@ -24,13 +29,15 @@ void TrainOptions::add_to(CLI::App& command) {
   command.get_option("--threads")->description("limits the threads; the same number gives the same weights (0: all cores)");
   command.footer(
       "Example:\n  waretwin train out/dataset --out out/detector --minutes 20\n"
-      "  waretwin map RECORDING --out out/map --detector out/detector\n\n"
+      "  waretwin map RECORDING --out out/map --detector out/detector\n"
+      "  waretwin train my/photographs --out out/mine --from conveyor --minutes 10 --set train.learning_rate=0.001\n\n"
       "--set takes the keys of train.yaml, e.g. train.batch=16, train.augment.mosaic=0. docs/training.md explains all.");
 }
 
 std::vector<std::string> TrainOptions::arguments() const {
   std::vector<std::string> words = {"--out", out, "--name", name};
   const auto add = [&](const char* option, const std::string& value) { words.insert(words.end(), {option, value}); };
+  if (!from.empty()) add("--from", from);
   if (resume) words.emplace_back("--resume");
   if (epochs) add("--epochs", std::to_string(*epochs));
   if (minutes) {

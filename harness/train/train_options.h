@@ -11,7 +11,7 @@ namespace waretwin {
 
 struct TrainOptions {
   CommonOptions common;
-  std::string dataset, out, name = "detector";
+  std::string dataset, out, name = "detector", from;
   bool resume = false;
   std::optional<int> epochs;
   std::optional<double> minutes;

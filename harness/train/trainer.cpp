@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 #include <sstream>
 
 #include "core/config.h"
@@ -23,6 +24,7 @@
 #include "harness/train/optimiser.h"
 #include "harness/train/precision.h"
 #include "harness/train/region_loss.h"
+#include "harness/train/start_model.h"
 #include "mapper/detect/resized_picture.h"
 
 namespace waretwin::train {
@@ -35,7 +37,7 @@ constexpr double kUsualPictures = 54000.0;  // shown in a training whose length 
 constexpr int kLeastEpochs = 12;
 constexpr int kIouSteps = 10;       // of COCO's AP: 0.5, 0.55, ... 0.95
 constexpr double kLateShare = 0.3;  // of the training, at its end: the best of these epochs is kept
-constexpr std::size_t kStatisticsPictures = 240;
+constexpr std::size_t kStatisticsPictures = 240, kUnfoldPictures = 32;
 constexpr float kLeastScore = 0.005f, kNmsIou = 0.45f;  // of validation
 constexpr std::int64_t kMegabyte = 1'000'000;
 
@@ -68,13 +70,15 @@ std::string config_text(TrainConfig config) {
 }
 
 // With what is left to the machine decided, so that train.yaml and the checkpoint say it.
-TrainConfig decided(TrainConfig config) {
-  config.precision = type_of(config.precision) == at::kBFloat16 ? "bfloat16" : "float32";
+TrainConfig decided(TrainConfig config, const std::optional<StartModel>& start) {
+  config.precision = decided_precision(config.precision);
+  if (start) config.anchors = static_cast<int>(start->plan.anchors.size());
   return config;
 }
 
 // What must be the same for a training to go on: all but how long it takes.
-std::string lasting_text(const std::string& name, const TrainConfig& config, const LabelledSet& set, const LabelledSet& valid) {
+std::string lasting_text(const std::string& name, const TrainConfig& config, const LabelledSet& set, const LabelledSet& valid,
+                         const std::optional<StartModel>& start) {
   TrainConfig lasting = config;
   lasting.epochs = lasting.patience = 0;
   lasting.minutes = lasting.cache_mb = 0.0;
@@ -92,7 +96,11 @@ std::string lasting_text(const std::string& name, const TrainConfig& config, con
       }
     }
   }
-  return text + "\nlabels: " + boxes.hex() + "\n";
+  text += "\nlabels: " + boxes.hex() + "\nfrom: ";
+  if (!start) return text + "drawn weights\n";
+  Digest weights;
+  weights.add(start->bytes);
+  return text + weights.hex() + "\n";
 }
 
 void check_same(const fs::path& file, const std::string& before, const std::string& now) {
@@ -129,7 +137,8 @@ class Training {
   Training(const TrainingRequest& request, const TrainingHooks& hooks)
       : request_(request),
         hooks_(hooks),
-        config_(decided(request.config)),
+        start_(request.start.empty() ? std::nullopt : std::optional(read_start_model(request.start))),
+        config_(decided(request.config, start_)),
         type_(type_of(config_.precision)),
         train_(read_split(request.dataset, "train")),
         valid_(read_split(request.dataset, "valid")),
@@ -141,6 +150,8 @@ class Training {
         train_pictures_(train_, cached_size(),
                         cache_bytes() - std::min(cache_bytes() / 2, bytes_of(valid_, {config_.width, config_.height}))) {
     steps_per_epoch_ = static_cast<int>(epoch_order(train_.images.size(), config_, 0).size()) / config_.batch;
+    if (start_ && fs::exists(request.out) && fs::equivalent(start_->weights.parent_path(), request.out))
+      throw Error(request.out, "holds the detector to start from; expected another --out");
     if (train_.classes != valid_.classes) throw Error(request.dataset, "splits train and valid name different classes");
     if (config_.epochs == 0 && config_.minutes == 0.0) {
       config_.epochs = std::max(kLeastEpochs, static_cast<int>(std::ceil(kUsualPictures / (steps_per_epoch_ * config_.batch))));
@@ -151,8 +162,8 @@ class Training {
     make_folder(request_.out);
     expect_no_other_model();
     load();
-    write_file(request_.out / "train.yaml",
-               "# waretwin " + std::string(kVersion) + ", dataset " + request_.dataset.string() + "\n" + config_text(config_));
+    write_file(request_.out / "train.yaml", "# waretwin " + std::string(kVersion) + ", dataset " + request_.dataset.string() +
+                                                (start_ ? ", from " + start_->given : "") + "\n" + config_text(config_));
     announce();
     while (!finished()) {
       run_epoch();
@@ -165,7 +176,8 @@ class Training {
  private:
   NetworkPlan make_plan() const {
     const std::vector<BoxShape> shapes = shapes_in_cells(train_, config_);
-    return plan_network(config_.width, config_.height, static_cast<int>(train_.classes.size()), find_anchors(shapes, config_.anchors));
+    return plan_network(config_.width, config_.height, static_cast<int>(train_.classes.size()),
+                        start_ ? start_->plan.anchors : find_anchors(shapes, config_.anchors));
   }
 
   std::int64_t cache_bytes() const { return static_cast<std::int64_t>(config_.cache_mb) * kMegabyte; }
@@ -204,7 +216,7 @@ class Training {
   }
 
   bool finished() const {
-    const bool patient = config_.patience == 0 || state_.best_epoch < 0 || state_.epochs_done - state_.best_epoch < config_.patience;
+    const bool patient = config_.patience == 0 || state_.epochs_done - state_.patience_from < config_.patience;
     return state_.epochs_done > 0 && (share_done(static_cast<double>(state_.steps)) >= 1.0 || !patient);
   }
 
@@ -214,14 +226,17 @@ class Training {
   }
 
   void load() {
-    state_.config = lasting_text(request_.name, config_, train_, valid_);
+    state_.config = lasting_text(request_.name, config_, train_, valid_, start_);
     state_.log = "epoch,box_loss,object_loss,class_loss,ap,ap50,ap75,side_error_px,learning_rate,seconds\n";
     for (const std::vector<at::Tensor>& tensors :
          {network_.learned(), network_.followed(), average_.learned(), average_.followed(), optimiser_.state()}) {
       state_.tensors.insert(state_.tensors.end(), tensors.begin(), tensors.end());
     }
     if (!request_.resume || !fs::exists(checkpoint_file())) {
+      if (request_.resume && fs::exists(model_file(".weights")) && fs::exists(model_file(".cfg")))
+        throw Error(checkpoint_file(), "not there, but a finished detector is; expected no --resume, which replaces it, or another --out");
       remove_earlier();
+      if (start_) begin_with_start();
       return;
     }
     check_same(checkpoint_file(), checkpoint_config(checkpoint_file()), state_.config);
@@ -230,8 +245,14 @@ class Training {
     if (state_.best_is_late != 0 && share_done(static_cast<double>(state_.steps)) < 1.0 - kLateShare) {
       // Longer than it was meant to be: its own late epochs decide, and patience is for those that come.
       state_.best_is_late = 0;
-      state_.best_epoch = state_.epochs_done;
+      state_.patience_from = state_.epochs_done;
     }
+  }
+
+  void begin_with_start() {
+    start_from(*start_, train_.classes, network_);
+    network_.unfold_statistics(spread_pictures(0, kUnfoldPictures, kUnfoldPictures));
+    follow_average(average_, network_, 0.0);
   }
 
   // No old model stands beside a new train.yaml. What is in a folder without one is not ours.
@@ -258,6 +279,11 @@ class Training {
         kMegabyte;
     set.anchor_iou = mean_best_iou(shapes, plan_.anchors);
     set.parameters = parameter_count(plan_);
+    if (start_) {
+      set.known_classes = static_cast<int>(std::count_if(train_.classes.begin(), train_.classes.end(), [&](const std::string& name) {
+        return std::find(start_->classes.begin(), start_->classes.end(), name) != start_->classes.end();
+      }));
+    }
     set.epochs_done = static_cast<int>(state_.epochs_done);
     hooks_.started(set);
   }
@@ -308,19 +334,26 @@ class Training {
 
   // Means and variances that belong to the averaged weights, from pictures as a detector sees them.
   void renew_statistics() {
-    const std::size_t count = train_pictures_.count(), shown = std::min(count, kStatisticsPictures);
     const auto batch_size = static_cast<std::size_t>(config_.batch);
+    const std::size_t shown = std::min(train_pictures_.count(), kStatisticsPictures);
     int index = 0;
     for (std::size_t first = 0; first < shown; first += batch_size) {
       if (hooks_.check) hooks_.check();
-      std::vector<Sample> batch;
-      for (std::size_t i = first; i < std::min(shown, first + batch_size); ++i) {
-        Sample& sample = batch.emplace_back();
-        sample.picture.create(config_.height, config_.width, CV_8UC3);
-        resize_picture(train_pictures_.get(i * count / shown).picture, sample.picture);
-      }
-      average_.renew_statistics(as_tensor(batch), index++);
+      average_.renew_statistics(spread_pictures(first, batch_size, shown), index++);
     }
+  }
+
+  // Up to `count` of `shown` training pictures, which lie evenly spread over the set, as a detector sees them.
+  at::Tensor spread_pictures(std::size_t first, std::size_t count, std::size_t shown) {
+    std::vector<Sample> batch;
+    const std::size_t all = train_pictures_.count();
+    shown = std::min(shown, all);
+    for (std::size_t i = first; i < std::min(shown, first + count); ++i) {
+      Sample& sample = batch.emplace_back();
+      sample.picture.create(config_.height, config_.width, CV_8UC3);
+      resize_picture(train_pictures_.get(i * all / shown).picture, sample.picture);
+    }
+    return as_tensor(batch);
   }
 
   // `plan`: with the size of the batch's pictures.
@@ -390,7 +423,7 @@ class Training {
     state_.best_is_late = late ? 1 : 0;
     state_.best_fitness = result.ap;
     state_.best_ap50 = result.ap50;
-    state_.best_epoch = state_.epochs_done;
+    state_.best_epoch = state_.patience_from = state_.epochs_done;
     // A detector keeps what scores 0.5 unless told otherwise.
     state_.best_weights = darknet_weights(average_, state_.steps * config_.batch, -std::log(balanced_score_ / (1.0 - balanced_score_)));
   }
@@ -409,6 +442,7 @@ class Training {
 
   const TrainingRequest& request_;
   const TrainingHooks& hooks_;
+  std::optional<StartModel> start_;
   TrainConfig config_;
   at::ScalarType type_;  // of what lies between the layers while learning
   LabelledSet train_, valid_;

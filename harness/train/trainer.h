@@ -13,6 +13,7 @@ struct TrainingRequest {
   std::filesystem::path dataset, out;  // see harness/labelled/labelled_set.h; splits train and valid
   std::string name = "detector";       // of the files
   bool resume = false;                 // from OUT's checkpoint, if there is one; otherwise whatever training OUT holds is replaced
+  std::string start;                   // a detector whose weights and anchors it starts from (start_model.h); empty: drawn ones
   TrainConfig config;
 };
 
@@ -21,7 +22,8 @@ struct TrainingSet {
   double cache_mb = 0.0;    // that decoded pictures take
   double anchor_iou = 0.0;  // mean IoU of the training boxes' shapes with the best anchor
   std::int64_t parameters = 0;
-  int epochs_done = 0;  // by an earlier run
+  int known_classes = 0;  // by the detector that it starts from
+  int epochs_done = 0;    // by an earlier run
 };
 
 struct EpochResult {
@@ -55,7 +57,8 @@ struct TrainingSummary {
 
 // Writes OUT/NAME.cfg, NAME.names, NAME.weights at the end, train.yaml at the start, log.csv and checkpoint after each epoch. Uses
 // libtorch's present number of threads, and as many of parallel_for in turn. Throws Error for datasets without pictures or boxes, for an
-// OUT with a model of another name, for a checkpoint of other settings, and where the loss stops being a number.
+// OUT with a model of another name, for a checkpoint of other settings, for a start that is no such detector or lies in OUT, and where the
+// loss stops being a number.
 TrainingSummary train_detector(const TrainingRequest& request, const TrainingHooks& hooks);
 
 }  // namespace waretwin::train

@@ -21,7 +21,9 @@ inline void resize_picture(const cv::Mat& picture, cv::Mat& to) {
   while (from.cols >= 2 * to.cols || from.rows >= 2 * to.rows)
     shrink({from.cols >= 2 * to.cols ? from.cols / 2 : from.cols, from.rows >= 2 * to.rows ? from.rows / 2 : from.rows});
   const cv::Size least(std::min(from.cols, to.cols), std::min(from.rows, to.rows));
-  if (4 * from.cols > 5 * least.width || 4 * from.rows > 5 * least.height) shrink(least);
+  const bool by_area = 4 * from.cols > 5 * least.width || 4 * from.rows > 5 * least.height;
+  if (by_area && least == to.size()) return cv::resize(from, to, least, 0, 0, cv::INTER_AREA);
+  if (by_area) shrink(least);
   cv::resize(from, to, to.size(), 0, 0, cv::INTER_LINEAR);
 }
 

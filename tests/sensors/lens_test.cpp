@@ -29,6 +29,19 @@ TEST(Lens, AgreesWithOpenCvsRationalModel) {
   }
 }
 
+TEST(Lens, SlopesAreThoseOfTheDistortion) {
+  const Distortion d = {.k1 = 0.31, .k2 = -0.12, .k3 = 0.02, .k4 = 0.05, .k5 = 0.01, .k6 = -0.003, .p1 = 0.02, .p2 = -0.01};
+  constexpr double kStep = 1e-6;
+  for (double x = -0.9; x <= 0.9; x += 0.3) {
+    for (double y = -0.7; y <= 0.7; y += 0.2) {
+      Eigen::Matrix2d quotients;
+      quotients << (d.apply({x + kStep, y}) - d.apply({x - kStep, y})) / (2.0 * kStep),
+          (d.apply({x, y + kStep}) - d.apply({x, y - kStep})) / (2.0 * kStep);
+      EXPECT_LT((d.slope({x, y}) - quotients).norm(), 1e-8) << x << " " << y;
+    }
+  }
+}
+
 TEST(Lens, RaysOfPixelsComeBackToThem) {
   for (const char* mode : {"nfov_unbinned", "nfov_2x2binned", "wfov_2x2binned", "wfov_unbinned"}) {
     CameraConfig camera;

@@ -26,7 +26,7 @@ class Training : public ::testing::Test {
   }
 
   TrainingRequest request(const std::string& out) const {
-    TrainingRequest request{set_, folder_.path() / out, "shapes", false, {}};
+    TrainingRequest request{set_, folder_.path() / out, "shapes", false, "", {}};
     request.config.width = 160;
     request.config.height = 96;
     request.config.anchors = 3;
@@ -125,6 +125,47 @@ TEST_F(Training, ACheckpointIsOfOneModel) {
   wanted.name = "others";
   wanted.resume = true;
   EXPECT_ERROR(train_detector(wanted, {}), "name: shapes", "name: others");
+}
+
+TEST_F(Training, AFinishedModelWithoutACheckpointIsNotLostByResuming) {
+  TrainingRequest wanted = request("out");
+  wanted.config.epoch_pictures = 24;
+  wanted.config.epochs = 1;
+  train_detector(wanted, {});
+  const std::string before = weights(wanted);
+  fs::remove(wanted.out / "checkpoint");
+  wanted.resume = true;
+  EXPECT_ERROR(train_detector(wanted, {}), "checkpoint", "a finished detector is", "no --resume");
+  EXPECT_TRUE(weights(wanted) == before);
+}
+
+TEST_F(Training, StartsFromADetector) {
+  TrainingRequest first = request("first"), second = request("second");
+  first.config.epoch_pictures = 240;
+  first.config.epochs = 4;
+  const double ap50 = train_detector(first, {}).best_ap50;
+  ASSERT_GT(ap50, 0.8);
+  second.start = first.out.string();
+  second.config.width = 192;
+  second.config.height = 128;
+  second.config.epochs = 1;
+  second.config.epoch_pictures = 24;
+  second.config.learning_rate = 0.0;
+  int known = 0;
+  TrainingHooks hooks;
+  hooks.started = [&](const TrainingSet& set) { known = set.known_classes; };
+  // What it knew it still knows, where pictures are larger.
+  EXPECT_GT(train_detector(second, hooks).best_ap50, ap50 - 0.15);
+  EXPECT_EQ(known, 2);
+  EXPECT_TRUE(read_file(second.out / "train.yaml").starts_with("# waretwin"));
+  EXPECT_NE(read_file(second.out / "train.yaml").find("from " + first.out.string()), std::string::npos);
+
+  second.start.clear();
+  second.resume = true;
+  EXPECT_ERROR(train_detector(second, {}), "checkpoint", "from: ", "drawn weights");
+  second.resume = false;
+  second.start = second.out.string();
+  EXPECT_ERROR(train_detector(second, {}), "holds the detector to start from", "another --out");
 }
 
 TEST_F(Training, WhatIsNotItsOwnStays) {
