@@ -56,14 +56,14 @@ void ThingsVariation::visit(Fields& f) {
 }
 
 int DatasetConfig::hall_size() const {
-  constexpr int kHalls = 40, kMost = 25;
+  constexpr int kHalls = 400, kMost = 10;
   return images_per_hall > 0 ? images_per_hall : std::clamp(count / kHalls, 1, kMost);
 }
 
 void DatasetConfig::visit(Fields& f) {
   f("seed", seed, "of everything that is drawn");
   f("count", count, "pictures", {.min = 1, .max = 10000000});
-  f("images_per_hall", images_per_hall, "with one hall, light, materials and things; 0: as many as make forty halls, at most 25",
+  f("images_per_hall", images_per_hall, "with one hall, light, materials and things; 0: as many as make four hundred halls, at most 10",
     {.min = 0, .max = 100000});
   f("valid_share", valid_share, "of the halls, for validation", {.min = 0, .max = 1});
   f("test_share", test_share, "of the halls, for testing", {.min = 0, .max = 1});
