@@ -15,15 +15,12 @@
 
 #include "harness/dataset/dataset_config.h"
 #include "harness/dataset/hall_source.h"
+#include "harness/units/units.h"
 
 namespace waretwin {
 
 struct DatasetFormats {
   bool yolo = true, coco = true;
-};
-
-struct Shard {
-  int index = 0, count = 1;  // this one makes the halls whose number leaves `index` when divided by `count`
 };
 
 struct DatasetProgress {
@@ -40,7 +37,7 @@ struct DatasetSummary {
   int missing_halls = 0;      // that other shards have not made yet
 };
 
-// Makes this shard's part of the set in `folder`, and the lists of the whole set where it was the last part. `step` is called after each
+// Makes this shard's halls of the set in `folder`, and the lists of the whole set where it was the last part. `step` is called after each
 // picture; what it throws ends the work, and a later call goes on. Throws Error where `folder` holds anything but a set of the very same
 // configuration, and for sources without objects of the classes, or without the
 // camera, asked for.

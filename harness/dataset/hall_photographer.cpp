@@ -73,6 +73,7 @@ struct HallPhotographer::State {
         dice(dice_for(config, "camera", number)),
         hall(varied(a_hall, config, number)),
         camera_config(varied_camera(hall, config.camera, dice)),
+        lens(camera_config.view()),
         ray_caster(std::make_shared<RayCaster>(hall.scene, RayCasterOptions{.isa = config.isa})),
         renderer(ray_caster,
                  [&] {
@@ -91,6 +92,7 @@ struct HallPhotographer::State {
   Dice dice;
   Hall hall;
   CameraConfig camera_config;
+  Lens lens;  // of its pictures
   std::shared_ptr<RayCaster> ray_caster;
   Renderer renderer;
   ColourCamera camera;
@@ -143,9 +145,8 @@ Photograph HallPhotographer::State::take(const View& view, int index) {
   out.record.index = index;
   out.record.name = name;
   out.record.kind = to_text(view.kind);
-  const Lens view_of_it = camera_config.view();
-  out.record.intrinsics = view_of_it.intrinsics();
-  out.record.distortion = view_of_it.distortion();
+  out.record.intrinsics = lens.intrinsics();
+  out.record.distortion = lens.distortion();
   out.record.X_WC = X_WC(now);
   const std::vector<ObjectView> seen = object_views(*ray_caster, camera.picture_rays(now, X_WC), images.instances);
   out.record.labels = label_objects(seen, images.instances, *hall.scene, classes, config.labels, config.polygon_tolerance_px);

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/random.h"
+#include "harness/units/units.h"
 #include "scenes/generate/generator.h"
 #include "scenes/generate/hall_files.h"
 
@@ -18,65 +19,6 @@ namespace waretwin {
 namespace fs = std::filesystem;
 
 namespace {
-
-// All of a vector's or matrix' numbers.
-template <class Numbers>
-void add(Digest& digest, const Numbers& numbers) {
-  digest.add_bytes(numbers.data(), sizeof(typename Numbers::Scalar) * static_cast<std::size_t>(numbers.size()));
-}
-
-template <class Numbers>
-void add_all(Digest& digest, const std::vector<Numbers>& list) {
-  for (const Numbers& numbers : list) add(digest, numbers);
-}
-
-void add(Digest& digest, const TextureUse& use) {
-  digest.add(use.texture);
-  digest.add(use.uv_set);
-  add(digest, use.uv_transform);
-}
-
-// What the models became, whatever files they came from: all that a picture depends on.
-void add_scene(const Scene& scene, Digest& digest) {
-  for (const Texture& texture : scene.textures) {
-    digest.add(texture.rgba);
-    for (const int value : {texture.width, static_cast<int>(texture.wrap_u), static_cast<int>(texture.wrap_v), int{texture.nearest}})
-      digest.add(value);
-  }
-  for (const Mesh& mesh : scene.meshes) {
-    add_all(digest, mesh.positions);
-    add_all(digest, mesh.normals);
-    for (const auto& set : mesh.uv) add_all(digest, set);
-    add_all(digest, mesh.colours);
-    add_all(digest, mesh.tangents);
-    digest.add(mesh.triangles);
-    digest.add(mesh.material);
-  }
-  for (const Material& material : scene.materials) {
-    add(digest, material.base_colour);
-    add(digest, material.emissive);
-    for (const TextureUse* use :
-         {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture, &material.emissive_texture}) {
-      add(digest, *use);
-    }
-    digest.add(int{material.alpha_mask});
-    for (const float value : {material.metallic, material.roughness, material.normal_scale, material.alpha_cutoff}) digest.add(value);
-  }
-  for (const Instance& instance : scene.instances) {
-    digest.add(instance.mesh);
-    digest.add(instance.object);
-    add(digest, instance.X_WM.matrix());
-  }
-  for (const Light& light : scene.lights) {
-    digest.add(static_cast<int>(light.kind));
-    for (const Eigen::Vector3f& value : {light.position, light.direction, light.intensity}) add(digest, value);
-    for (const float value : {light.range, light.inner_cone, light.outer_cone, light.radius}) digest.add(value);
-  }
-  add(digest, scene.ambient);
-  add(digest, scene.background);
-  for (const TrueObject& object : scene.objects) digest.add(object.class_name);
-  for (const Mover& mover : scene.movers) digest.add(mover.instances);
-}
 
 class ScenarioSource final : public HallSource {
  public:

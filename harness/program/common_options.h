@@ -46,5 +46,6 @@ Command add_generate_command(CLI::App& program);
 Command add_dataset_command(CLI::App& program);
 Command add_detect_command(CLI::App& program);
 Command add_train_command(CLI::App& program);
+Command add_compare_command(CLI::App& program);
 
 }  // namespace waretwin

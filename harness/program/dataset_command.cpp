@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -27,22 +26,6 @@ struct DatasetOptions {
   std::optional<int> count, samples;
   std::optional<std::string> quality;
 };
-
-// "I/N", I from 0.
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  const char* const end = text.data() + text.size();
-  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
-  bool good = first == std::errc() && slash != end && *slash == '/';
-  if (good) {
-    const auto [last, second] = std::from_chars(slash + 1, end, shard.count);
-    good = second == std::errc() && last == end;
-  }
-  if (!good || shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
-    throw Error("--shard " + text + ": expected I/N with I from 0 to N - 1, e.g. 0/4");
-  }
-  return shard;
-}
 
 std::string time_text(double seconds) {
   char text[32];

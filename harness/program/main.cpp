@@ -45,11 +45,11 @@ int run(int argc, char** argv) {
       "  waretwin detect out/detector photo.jpg --out out/boxes\n\n"
       "`waretwin COMMAND --help` explains a command. Results go to files and stdout, the log to stderr.\n"
       "Exit codes: 0 success, 1 a gate failed, 2 bad input (one line says what), 3 a fault of the program.");
-  const std::vector<waretwin::Command> commands = {waretwin::add_run_command(program),      waretwin::add_map_command(program),
-                                                   waretwin::add_record_command(program),   waretwin::add_score_command(program),
-                                                   waretwin::add_render_command(program),   waretwin::add_inspect_command(program),
-                                                   waretwin::add_generate_command(program), waretwin::add_dataset_command(program),
-                                                   waretwin::add_train_command(program),    waretwin::add_detect_command(program)};
+  const std::vector<waretwin::Command> commands = {
+      waretwin::add_run_command(program),      waretwin::add_map_command(program),     waretwin::add_record_command(program),
+      waretwin::add_score_command(program),    waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
+      waretwin::add_generate_command(program), waretwin::add_dataset_command(program), waretwin::add_train_command(program),
+      waretwin::add_detect_command(program),   waretwin::add_compare_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -13,6 +13,7 @@
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
 #include "harness/run/map_config.h"
+#include "harness/run/run_choice.h"
 #include "harness/run/run_folder.h"
 
 namespace waretwin {
@@ -30,7 +31,7 @@ int map(const MapOptions& options) {
   if (options.mapping.detector == "truth")
     throw Error("--detector truth: a recording holds no true boxes; expected none, a model or a JSON file");
   MapConfig config;
-  config.mapper = options.mapping.mapper_config();
+  config.mapper = chosen_mapper(options.mapping.profile, options.mapping.detector, options.mapping.rate_hz);
   if (!options.poses.empty()) config.mapper.poses = options.poses;
   config.frames = options.mapping.frames;
   config.resume = options.mapping.resume;

@@ -1,11 +1,8 @@
 #include "harness/program/mapping_options.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
-#include "core/error.h"
 #include "harness/program/common_options.h"
-#include "mapper/detect/shipped_models.h"
 
 namespace waretwin {
 
@@ -33,26 +30,6 @@ void MappingOptions::add_to(CLI::App& command, const std::string& detector_help)
           ->type_name("FILE");
   // The file settles what these would.
   for (const char* settled : {"--profile", "--detector", "--rate", "--frames", "--resume"}) from_file->excludes(settled);
-}
-
-MapperConfig MappingOptions::mapper_config() const {
-  MapperConfig config = MapperConfig::make(profile);
-  if (rate_hz) config.rate_hz = *rate_hz;
-  if (!detector || *detector == "truth") return config;
-  const std::filesystem::path path = *detector;
-  if (*detector == "yolo" || *detector == "none") {
-    config.detector = *detector;
-  } else if (path.extension() == ".json") {
-    config.detector = "boxes";
-    config.boxes = *detector;
-  } else if (std::filesystem::exists(path) || is_shipped_model(path)) {
-    config.detector = "yolo";
-    config.model = *detector;
-  } else {
-    throw Error("--detector " + *detector +
-                ": no such file; expected yolo, truth, none, a JSON file with boxes, or a model (folder, file or shipped name)");
-  }
-  return config;
 }
 
 }  // namespace waretwin

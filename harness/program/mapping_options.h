@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "mapper/mapper_config.h"
-
 namespace waretwin {
 
 struct MappingOptions {
@@ -18,8 +16,6 @@ struct MappingOptions {
   std::string config_file;
 
   void add_to(CLI::App& command, const std::string& detector_help);
-  // The profile's constants with rate and detector. `truth` and no detector are left to the caller.
-  MapperConfig mapper_config() const;
 };
 
 }  // namespace waretwin

@@ -12,13 +12,19 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/files.h"
+#include "harness/gate/comparison_junit.h"
 #include "harness/program/common_options.h"
+#include "harness/program/gate_options.h"
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
+#include "harness/program/suite_options.h"
 #include "harness/run/budget.h"
+#include "harness/run/run_choice.h"
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/number_text.h"
+#include "harness/score/score_json.h"
 #include "mapper/detect/shipped_models.h"
 #include "mapper/detect/yolo_detector.h"
 
@@ -29,25 +35,26 @@ namespace {
 struct RunOptions {
   CommonOptions common;
   MappingOptions mapping;
-  std::string scenario, out;
+  GateOptions gate;
+  SuiteOptions suite;
+  std::string scenario, out, baseline;
   bool budget = false;
   std::string poses, depth = "sensor", association = "map";
 };
 
-RunConfig configure(const RunOptions& options) {
-  RunConfig config;
-  config.mapper = options.mapping.mapper_config();
-  if (!options.mapping.detector) config.mapper.detector = RunConfig().mapper.detector;
-  config.truth_stages.detector = options.mapping.detector == "truth";
-  config.truth_stages.poses = options.poses == "truth";
-  if (!options.poses.empty() && options.poses != "truth") config.mapper.poses = options.poses;
-  config.truth_stages.association = options.association == "truth";
-  config.simulation.truth_depth = options.depth == "truth";
-  config.simulation.max_frames = options.mapping.frames;
-  config.resume = options.mapping.resume;
+RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
+  const MappingOptions& mapping = options.mapping;
+  RunConfig config = chosen_run({.profile = mapping.profile,
+                                 .detector = mapping.detector,
+                                 .poses = options.poses,
+                                 .depth = options.depth,
+                                 .association = options.association,
+                                 .rate_hz = mapping.rate_hz,
+                                 .frames = mapping.frames,
+                                 .resume = mapping.resume});
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
-  for (Setting& setting : options.common.settings()) settings.push_back(std::move(setting));
+  for (Setting& setting : given) settings.push_back(std::move(setting));
   return load_run_config(options.scenario, std::move(config), options.mapping.config_file, settings);
 }
 
@@ -80,9 +87,26 @@ void warn_of_strange_classes(const RunConfig& config, const Scene& scene) {
                list(strange), list(known));
 }
 
+bool worse_than(const JudgedScore& baseline, const Tolerances& tolerances, const RunOptions& options, const RunScore& score,
+                RunFolder& folder) {
+  const Comparison comparison = compare_scores(baseline, judged_score(score_json(score), folder.file("score.json")), tolerances);
+  const std::string table = comparison_text(comparison);
+  folder.write("baseline.md", "Before: " + options.baseline + "\n\n" + table);
+  if (!options.gate.junit.empty()) write_file(options.gate.junit, junit_xml({junit_of(comparison, score.scenario)}));
+  std::cout << "\nbefore: " << options.baseline << "\n\n" << table;
+  return comparison.worse();
+}
+
 int run(const RunOptions& options) {
   options.common.apply();
-  const RunConfig config = configure(options);
+  if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.out);
+  if (options.scenario.empty()) throw Error("no hall; expected SCENARIO, or --suite SUITE");
+  std::vector<Setting> settings = options.common.settings();
+  const Tolerances tolerances = options.gate.tolerances(take_tolerance_settings(settings));
+  // Before the drive, which may replace it.
+  std::optional<JudgedScore> baseline;
+  if (!options.baseline.empty()) baseline = read_judged_score(options.baseline);
+  const RunConfig config = configure(options, std::move(settings));
   if (options.budget && !config.resume.empty()) {
     throw Error("--budget: the configuration goes on from a map (resume: " + config.resume +
                 "); expected none, for an earlier drive's errors belong to no stage of this one");
@@ -118,7 +142,8 @@ int run(const RunOptions& options) {
   }
   std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json"
             << (options.budget ? ", budget.md)\n" : ")\n");
-  if (!result.score.motion || result.score.motion->contacts.empty()) return 0;
+  const bool got_worse = baseline && worse_than(*baseline, tolerances, options, result.score, *folder);
+  if (!result.score.motion || result.score.motion->contacts.empty()) return got_worse ? 1 : 0;
   // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
   for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));
   return 1;
@@ -129,7 +154,7 @@ int run(const RunOptions& options) {
 Command add_run_command(CLI::App& program) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand("run", "closed loop: simulates a drive through a hall, maps it and scores the map");
-  command->add_option("SCENARIO", options->scenario, "scenario file")->required();
+  command->add_option("SCENARIO", options->scenario, "scenario file; or --suite");
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(
       *command,
@@ -144,12 +169,27 @@ Command add_run_command(CLI::App& program) {
                  "drives once more (with up to six maps in memory) and maps with the truth in place of each stage in turn: budget.md says "
                  "what each stage costs")
       ->excludes("--resume");
+  CLI::Option* baseline =
+      command
+          ->add_option("--baseline", options->baseline,
+                       "an earlier score.json, or its run's folder: exit code 1 where the new score is worse; baseline.md "
+                       "in DIR says in what")
+          ->type_name("SCORE");
+  options->gate.add_to(*command);
+  for (const char* judging : {"--tolerances", "--junit"}) command->get_option(judging)->needs(baseline);
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
+  options->suite.add_to(*command);
+  // Each run of a suite has its own.
+  for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--config", "--poses", "--depth",
+                          "--association", "--budget", "--baseline"})
+    command->get_option("--suite")->excludes(own);
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin run scenes/agiprobot/scenario.yaml --out out/agiprobot --profile paper --detector truth\n"
-      "  waretwin run scenes/agiprobot/scenario.yaml --out out/again --config out/agiprobot/config.yaml\n\n"
-      "`waretwin inspect SCENARIO --keys` lists every key for --set.");
+      "  waretwin run scenes/agiprobot/scenario.yaml --out out/again --config out/agiprobot/config.yaml\n"
+      "  waretwin run scenes/agiprobot/scenario.yaml --out out/branch --baseline out/main/score.json --junit out/branch.xml\n"
+      "  waretwin run --suite scenes/smoke.yaml --out out/smoke\n\n"
+      "`waretwin inspect SCENARIO --keys` lists every key for --set; with --baseline there is tolerances.MEASURE, too (waretwin compare).");
   return {command, [options] { return run(*options); }};
 }
 

@@ -1,0 +1,30 @@
+// How a run is made, in the words of the command line and of a suite.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/run/run_config.h"
+
+namespace waretwin {
+
+// The profile's constants with rate and detector. `detector`: yolo, none, a JSON file with boxes, or a model (folder, file or shipped
+// name); truth, and nothing, are left to the caller. Throws Error for what is none of these.
+MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::string>& detector, std::optional<double> rate_hz);
+
+struct RunChoice {
+  std::string profile = "best";
+  std::optional<std::string> detector;  // also truth; nothing: the shipped model
+  std::string poses;                    // empty: as the profile has it; laser, odometry or truth
+  std::string depth = "sensor", association = "map";
+  std::optional<double> rate_hz;  // nothing: as the profile has it
+  int frames = 0;                 // 0: all
+  std::string resume;             // a map.waretwin
+};
+
+// All but the scenario.
+RunConfig chosen_run(const RunChoice& choice);
+
+}  // namespace waretwin

@@ -1,0 +1,56 @@
+#include "harness/suite/suite_config.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/error.h"
+
+namespace waretwin {
+
+namespace {
+
+bool names_a_folder(const std::string& name) {
+  return !name.empty() && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; });
+}
+
+}  // namespace
+
+void SuiteRun::visit(Fields& f) {
+  f("scenario", scenario, "scenario file, from the suite's folder; or `generate`");
+  f.group("generate", generate, "a hall drawn as `waretwin generate` does; `style` must be named");
+  f("profile", choice.profile, "of the mapper", {.choices = {"best", "paper"}});
+  std::string detector = choice.detector.value_or("");
+  f("detector", detector, "as for run --detector; empty: the shipped model");
+  choice.detector = detector.empty() ? std::nullopt : std::optional(detector);
+  f("poses", choice.poses, "laser, odometry or truth; empty: as the profile has it", {.choices = {"", "laser", "odometry", "truth"}});
+  f("depth", choice.depth, "sensor or truth", {.choices = {"sensor", "truth"}});
+  f("association", choice.association, "map or truth", {.choices = {"map", "truth"}});
+  f("rate_hz", choice.rate_hz, "frames mapped a second; 0: every frame; null: as the profile has it", {.min = 0, .max = 1000});
+  f("frames", choice.frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+  f("config", config, "an earlier run's config.yaml, or a part of one, from the suite's folder");
+  f("set", set, "key=value, as for run --set");
+  f("baseline", baseline, "score.json that the score must not be worse than, from the suite's folder");
+  f.group("pass", pass, "what the score must reach");
+  if (scenario.empty() && !generate.asked_for()) f.reject("scenario", "missing; expected a scenario file, or generate with a style");
+  if (!scenario.empty() && generate.asked_for()) f.reject("scenario", "and generate are both named; expected one of them");
+}
+
+void SuiteConfig::visit(Fields& f) {
+  f("name", name, "of the suite, in reports");
+  f.map("runs", runs, "runs by name");
+  f.group("tolerances", tolerances, "how much worse than its baseline a score may be");
+}
+
+SuiteConfig read_suite(const std::filesystem::path& file) {
+  SuiteConfig suite;
+  read_config(file, [&](Fields& f) { f.group("suite", suite, "runs with pass marks"); });
+  if (suite.runs.empty()) throw Error(file, "suite.runs is empty; expected runs by name");
+  for (const auto& entry : suite.runs) {
+    if (!names_a_folder(entry.first))
+      throw Error(file, "suite.runs: '" + entry.first + "'; expected a name of letters, digits, '-', '_' and '.'");
+  }
+  return suite;
+}
+
+}  // namespace waretwin

@@ -1,0 +1,110 @@
+#include "harness/units/units.h"
+
+#include <charconv>
+
+#include "core/cpu_features.h"
+#include "core/error.h"
+#include "core/files.h"
+
+namespace waretwin {
+
+namespace {
+
+// All of a vector's or matrix' numbers.
+template <class Numbers>
+void add(Digest& digest, const Numbers& numbers) {
+  digest.add_bytes(numbers.data(), sizeof(typename Numbers::Scalar) * static_cast<std::size_t>(numbers.size()));
+}
+
+template <class Numbers>
+void add_all(Digest& digest, const std::vector<Numbers>& list) {
+  for (const Numbers& numbers : list) add(digest, numbers);
+}
+
+void add(Digest& digest, const TextureUse& use) {
+  digest.add(use.texture);
+  digest.add(use.uv_set);
+  add(digest, use.uv_transform);
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
+  bool good = first == std::errc() && slash != end && *slash == '/';
+  if (good) {
+    const auto [last, second] = std::from_chars(slash + 1, end, shard.count);
+    good = second == std::errc() && last == end;
+  }
+  if (!good || shard.count < 1 || shard.index < 0 || shard.index >= shard.count) {
+    throw Error("--shard " + text + ": expected I/N with I from 0 to N - 1, e.g. 0/4");
+  }
+  return shard;
+}
+
+const std::string& program_identity() {
+  static const std::string identity = [] {
+    Digest digest;
+    digest.add(read_file("/proc/self/exe"));
+    digest.add(cpu_model());
+    for (const std::string& feature : cpu_features()) digest.add(feature);
+    return digest.hex();
+  }();
+  return identity;
+}
+
+void add_scene(const Scene& scene, Digest& digest) {
+  for (const Texture& texture : scene.textures) {
+    digest.add(texture.rgba);
+    for (const int value : {texture.width, static_cast<int>(texture.wrap_u), static_cast<int>(texture.wrap_v), int{texture.nearest}})
+      digest.add(value);
+  }
+  for (const Mesh& mesh : scene.meshes) {
+    add_all(digest, mesh.positions);
+    add_all(digest, mesh.normals);
+    for (const auto& set : mesh.uv) add_all(digest, set);
+    add_all(digest, mesh.colours);
+    add_all(digest, mesh.tangents);
+    digest.add(mesh.triangles);
+    digest.add(mesh.material);
+  }
+  for (const Material& material : scene.materials) {
+    add(digest, material.base_colour);
+    add(digest, material.emissive);
+    for (const TextureUse* use :
+         {&material.base_colour_texture, &material.metallic_roughness_texture, &material.normal_texture, &material.emissive_texture}) {
+      add(digest, *use);
+    }
+    digest.add(int{material.alpha_mask});
+    for (const float value : {material.metallic, material.roughness, material.normal_scale, material.alpha_cutoff}) digest.add(value);
+  }
+  for (const Instance& instance : scene.instances) {
+    digest.add(instance.mesh);
+    digest.add(instance.object);
+    add(digest, instance.X_WM.matrix());
+  }
+  for (const Light& light : scene.lights) {
+    digest.add(static_cast<int>(light.kind));
+    for (const Eigen::Vector3f& value : {light.position, light.direction, light.intensity}) add(digest, value);
+    for (const float value : {light.range, light.inner_cone, light.outer_cone, light.radius}) digest.add(value);
+  }
+  add(digest, scene.ambient);
+  add(digest, scene.background);
+  for (const TrueObject& object : scene.objects) digest.add(object.class_name);
+  for (const Mover& mover : scene.movers) digest.add(mover.instances);
+}
+
+UnitStore::UnitStore(const std::filesystem::path& folder) : folder_(folder) { make_folder(folder); }
+
+std::filesystem::path UnitStore::file(const std::string& name) const { return folder_ / (name + ".json"); }
+
+std::optional<std::string> UnitStore::result(const std::string& name) const {
+  if (!std::filesystem::exists(file(name))) return std::nullopt;
+  return read_file(file(name));
+}
+
+void UnitStore::write(const std::string& name, std::string_view result) const { write_file(file(name), result); }
+
+}  // namespace waretwin

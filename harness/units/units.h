@@ -1,0 +1,43 @@
+// Work that is split over processes: each unit's result is written once, under a name made of what the result depends on. So killed,
+// repeated and overlapping shards lose nothing and do nothing twice, and whoever finds all units can put them together.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/digest.h"
+#include "scenes/scene.h"
+
+namespace waretwin {
+
+// Which part of the work this process does: the units whose number leaves `index` when divided by `count`.
+struct Shard {
+  int index = 0, count = 1;
+  bool has(int unit) const { return unit % count == index; }
+};
+// "I/N", I from 0. Throws Error for anything else.
+Shard parse_shard(const std::string& text);
+
+// What the program is: its file's bytes and the CPU, by which kernels are picked.
+const std::string& program_identity();
+
+// Adds what the models became, whatever files they came from: all that rays meet.
+void add_scene(const Scene& scene, Digest& digest);
+
+class UnitStore {
+ public:
+  // Makes the folder. Throws Error where that cannot be.
+  explicit UnitStore(const std::filesystem::path& folder);
+  // Nothing where the unit is not done.
+  std::optional<std::string> result(const std::string& name) const;
+  // Atomic.
+  void write(const std::string& name, std::string_view result) const;
+
+ private:
+  std::filesystem::path file(const std::string& name) const;
+  std::filesystem::path folder_;
+};
+
+}  // namespace waretwin
