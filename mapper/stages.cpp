@@ -42,6 +42,8 @@ std::unique_ptr<Localiser> make_localiser(const MapperConfig& config, const Stre
   return std::make_unique<OdometryLocaliser>(info);
 }
 
+}  // namespace
+
 std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   if (config.detector == "yolo") {
     return std::make_unique<YoloDetector>(model_or_shipped(config.model), config.detect);
@@ -52,8 +54,6 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
   }
   return std::make_unique<NoDetector>();
 }
-
-}  // namespace
 
 std::unique_ptr<Associator> make_associator(const MapperConfig& config) {
   if (config.objects == "evidence") return std::make_unique<EvidenceAssociator>(config.evidence);

@@ -25,6 +25,9 @@ struct Stages {
 // What `poses` means for a stream: auto is laser where it has scans, else recorded, else odometry.
 std::string chosen_poses(const MapperConfig& config, const StreamInfo& info);
 
+// The detector that a configuration names. Throws Error where its files are missing or are none.
+std::unique_ptr<Detector> make_detector(const MapperConfig& config);
+
 // The associator that a configuration names: which mapped object is which, and how objects are updated.
 std::unique_ptr<Associator> make_associator(const MapperConfig& config);
 

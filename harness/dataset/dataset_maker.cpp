@@ -165,9 +165,12 @@ std::vector<std::string> split_halls(int halls, int sources, double valid_share,
   return out;
 }
 
-DatasetSummary make_dataset(const DatasetConfig& config, const std::vector<std::unique_ptr<HallSource>>& sources, const fs::path& folder,
+DatasetSummary make_dataset(const DatasetConfig& asked_for, const std::vector<std::unique_ptr<HallSource>>& sources, const fs::path& folder,
                             const DatasetFormats& formats, const Shard& shard, const std::function<void(const DatasetProgress&)>& step) {
   WARETWIN_CHECK(!sources.empty() && shard.count > 0 && shard.index >= 0 && shard.index < shard.count, "halls and a shard of them");
+  // dataset.yaml says the number itself: a set goes on as it was begun, whatever the usual number is by then.
+  DatasetConfig config = asked_for;
+  config.images_per_hall = asked_for.hall_size();
   const std::vector<std::string> classes = classes_of(config, sources);
   expect_camera(config.camera.name, sources);
   const std::string text = description(config, sources, classes, formats);

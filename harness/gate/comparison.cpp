@@ -30,7 +30,7 @@ const JudgedObject* counted_object(const JudgedScore& score, const JudgedObject&
   return found == score.objects.end() ? nullptr : &*found;
 }
 
-void compare_objects(const JudgedScore& before, const JudgedScore& after, double tolerance, Comparison& comparison) {
+void compare_objects(const JudgedScore& before, const JudgedScore& after, const std::optional<double>& tolerance, Comparison& comparison) {
   int lacking = 0, added = 0;
   for (const JudgedObject& object : before.objects) {
     if (!object.counted) continue;
@@ -40,7 +40,8 @@ void compare_objects(const JudgedScore& before, const JudgedScore& after, double
       continue;
     }
     const Verdict verdict = verdict_of(object.iou3d, now->iou3d, true, tolerance);
-    if (verdict != Verdict::kSame) comparison.objects.push_back({object_name(object), object.iou3d, now->iou3d, tolerance, verdict});
+    if (verdict == Verdict::kBetter || verdict == Verdict::kWorse)
+      comparison.objects.push_back({object_name(object), object.iou3d, now->iou3d, tolerance, verdict});
   }
   for (const JudgedObject& object : after.objects) added += object.counted && counted_object(before, object) == nullptr ? 1 : 0;
   if (lacking > 0 || added > 0) {
@@ -133,8 +134,13 @@ std::vector<MissedMark> missed_marks(const JudgedScore& score, const PassMarks& 
 }
 
 std::string missed_text(const MissedMark& missed) {
-  return missed.name + (missed.value ? " " + number(*missed.value) : " has no value") + ", expected at " +
-         (missed.more_is_better ? "least " : "most ") + number(missed.mark);
+  const std::string mark = number(missed.mark);
+  std::string value = " has no value";
+  if (missed.value) {
+    value = " " + number(*missed.value);
+    if (value == " " + mark) value = " " + std::to_string(*missed.value);  // 0.99996 is no 1
+  }
+  return missed.name + value + ", expected at " + (missed.more_is_better ? "least " : "most ") + mark;
 }
 
 std::vector<std::string> worse_texts(const Comparison& comparison) {

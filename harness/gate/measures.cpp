@@ -8,7 +8,8 @@ namespace waretwin {
 namespace {
 
 // Runs are deterministic, so a tolerance is no allowance for noise: it says what nobody would miss. Times depend on the machine.
-constexpr std::array<Measure, 21> kMeasures = {{
+constexpr std::array<Measure, 22> kMeasures = {{
+    {"objects_seen", "/summary/truth", true, 0.0, "true objects that were seen enough to count"},
     {"recall", "/summary/recall", true, 0.0, "share of the counted true objects that are matched"},
     {"precision", "/summary/precision", true, 0.0, "share of the mapped objects that match a true one"},
     {"mean_iou3d", "/summary/mean_iou3d", true, 0.005, "mean 3D IoU over the counted true objects"},
@@ -26,7 +27,7 @@ constexpr std::array<Measure, 21> kMeasures = {{
     {"detection_precision", "/detection/precision", true, 0.01, "the detector's precision there"},
     {"detection_recall", "/detection/recall", true, 0.01, "the detector's recall there"},
     {"frames_without_pose", "/frames/without_pose", false, 0.0, "camera frames that could not be placed"},
-    {"contacts", "/motion/contacts", false, 0.0, "how often the vehicle touched something"},
+    {"contacts", "/motion/contacts", false, 0.0, "how often the vehicle touched something", true},
     {"frame_median_ms", "/timing_ms/frame/median", false, std::nullopt, "time of a mapped frame, median, ms"},
     {"frame_p95_ms", "/timing_ms/frame/p95", false, std::nullopt, "time of a mapped frame, 95th percentile, ms"},
     {"peak_rss_mb", "/peak_rss_mb", false, std::nullopt, "memory, MB"},

@@ -12,10 +12,11 @@ namespace waretwin {
 
 struct Measure {
   const char* name;   // in tolerances, pass marks and tables
-  const char* place;  // in score.json, as a JSON pointer; a list there counts its entries
+  const char* place;  // in score.json, as a JSON pointer
   bool more_is_better;
   std::optional<double> tolerance;  // by which it may get worse, in its own unit; nothing: shown and not judged unless asked for
   const char* what;
+  bool counts = false;  // the entries of a list there
 };
 std::span<const Measure> measures();
 
@@ -29,7 +30,7 @@ struct MeasureValues {
 struct Tolerances {
   Tolerances();
   MeasureValues measures;
-  double object_iou3d = 0.05;  // of each true object by itself, which a mean would hide
+  std::optional<double> object_iou3d = 0.05;  // of each true object by itself, which a mean would hide
   void visit(Fields& f);
 };
 

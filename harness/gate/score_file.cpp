@@ -1,5 +1,6 @@
 #include "harness/gate/score_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -22,13 +23,14 @@ std::string text_at(const Json& json, const char* place) {
   return json.contains(pointer) && json[pointer].is_string() ? json[pointer].get<std::string>() : "";
 }
 
-std::optional<double> number_at(const Json& json, const char* place, const std::filesystem::path& file) {
-  const Json::json_pointer pointer(place);
+std::optional<double> number_at(const Json& json, const Measure& measure, const std::filesystem::path& file) {
+  const Json::json_pointer pointer(measure.place);
   if (!json.contains(pointer) || json[pointer].is_null()) return std::nullopt;
   const Json& value = json[pointer];
-  if (value.is_array()) return static_cast<double>(value.size());
-  if (!value.is_number() || !std::isfinite(value.get<double>()))
-    throw Error(file, std::string(place).substr(1) + " is " + brief(value) + "; expected a number");
+  if (measure.counts && value.is_array()) return static_cast<double>(value.size());
+  if (measure.counts || !value.is_number() || !std::isfinite(value.get<double>()))
+    throw Error(file,
+                std::string(measure.place).substr(1) + " is " + brief(value) + "; expected a " + (measure.counts ? "list" : "number"));
   return value.get<double>();
 }
 
@@ -59,10 +61,14 @@ JudgedScore judged_score(const std::string& text, const std::filesystem::path& f
   score.digest = text_at(json, "/digest");
   score.cpu = text_at(json, "/cpu/model");
   if (const auto seed = json.find("seed"); seed != json.end() && seed->is_number_integer()) score.seed = seed->get<std::int64_t>();
-  for (const Measure& measure : measures()) score.values.push_back(number_at(json, measure.place, file));
-  if (const auto objects = json.find("objects"); objects != json.end() && objects->is_array()) {
+  for (const Measure& measure : measures()) score.values.push_back(number_at(json, measure, file));
+  const auto objects = json.find("objects");
+  if (objects != json.end()) {
+    if (!objects->is_array()) throw Error(file, "objects is " + brief(*objects) + "; expected a list");
     for (const Json& row : *objects) score.objects.push_back(object_of(row, file));
   }
+  const bool measured = std::any_of(score.values.begin(), score.values.end(), [](const auto& value) { return value.has_value(); });
+  if (!measured && objects == json.end()) throw Error(file, "holds no measure and no objects; expected a score.json");
   return score;
 }
 

@@ -23,8 +23,9 @@ int compare(const CompareOptions& options) {
   options.common.apply();
   const Tolerances tolerances = options.gate.tolerances(options.common.settings());
   const Comparison comparison = compare_scores(read_judged_score(options.before), read_judged_score(options.after), tolerances);
-  if (!options.gate.junit.empty()) write_file(options.gate.junit, junit_xml({junit_of(comparison, "compare " + options.after)}));
   std::cout << comparison_text(comparison);
+  options.gate.make_ready();
+  if (!options.gate.junit.empty()) write_file(options.gate.junit, junit_xml({junit_of(comparison, "compare " + options.after)}));
   return comparison.worse() ? 1 : 0;
 }
 

@@ -1,7 +1,10 @@
 #include "harness/program/gate_options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+
+#include "core/files.h"
 
 namespace waretwin {
 
@@ -9,6 +12,11 @@ void GateOptions::add_to(CLI::App& command) {
   command.add_option("--tolerances", tolerance_file, "YAML file with how much worse each measure may be, under the key tolerances")
       ->type_name("FILE");
   command.add_option("--junit", junit, "writes the result as JUnit XML, which CI services show")->type_name("FILE");
+}
+
+void GateOptions::make_ready() const {
+  const std::filesystem::path folder = std::filesystem::path(junit).parent_path();
+  if (!folder.empty()) make_folder(folder);
 }
 
 Tolerances GateOptions::tolerances(const std::vector<Setting>& settings) const {

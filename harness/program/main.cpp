@@ -58,8 +58,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
-      return fail(kBadInput, "command '" + std::string(argv[1]) +
-                                 "' is not known; expected run, map, record, score, render, inspect, generate, dataset, train or detect");
+      return fail(kBadInput,
+                  "command '" + std::string(argv[1]) +
+                      "' is not known; expected run, map, record, score, compare, render, inspect, generate, dataset, train or detect");
     }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }

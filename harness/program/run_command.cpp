@@ -92,7 +92,12 @@ bool worse_than(const JudgedScore& baseline, const Tolerances& tolerances, const
   const Comparison comparison = compare_scores(baseline, judged_score(score_json(score), folder.file("score.json")), tolerances);
   const std::string table = comparison_text(comparison);
   folder.write("baseline.md", "Before: " + options.baseline + "\n\n" + table);
-  if (!options.gate.junit.empty()) write_file(options.gate.junit, junit_xml({junit_of(comparison, score.scenario)}));
+  JunitSuite suite = junit_of(comparison, score.scenario);
+  if (score.motion) {
+    for (const RobotContact& contact : score.motion->contacts)
+      suite.cases.push_back({score.scenario, "contact with " + contact.with, {}, contact_text(contact), ""});
+  }
+  if (!options.gate.junit.empty()) write_file(options.gate.junit, junit_xml({suite}));
   std::cout << "\nbefore: " << options.baseline << "\n\n" << table;
   return comparison.worse();
 }
@@ -102,7 +107,11 @@ int run(const RunOptions& options) {
   if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.out);
   if (options.scenario.empty()) throw Error("no hall; expected SCENARIO, or --suite SUITE");
   std::vector<Setting> settings = options.common.settings();
-  const Tolerances tolerances = options.gate.tolerances(take_tolerance_settings(settings));
+  const std::vector<Setting> of_tolerances = take_tolerance_settings(settings);
+  if (options.baseline.empty() && !of_tolerances.empty())
+    throw Error("--set " + of_tolerances.front().key + ": expected --baseline, which it belongs to");
+  const Tolerances tolerances = options.gate.tolerances(of_tolerances);
+  options.gate.make_ready();
   // Before the drive, which may replace it.
   std::optional<JudgedScore> baseline;
   if (!options.baseline.empty()) baseline = read_judged_score(options.baseline);

@@ -1,5 +1,7 @@
 #include "harness/program/suite_options.h"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -35,19 +37,26 @@ int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const
     const InterruptWatch watch;
     Progress bar("suite", common.quiet);
     const Shard shard = options.shard.empty() ? Shard() : parse_shard(options.shard);
-    summary = run_suite({options.suite, settings, out, shard, options.merge}, [&](const SuiteProgress& now) {
-      watch.check("the same command goes on with the runs that are not done");
+    SuiteHooks hooks;
+    hooks.check = [&] { watch.check("the same command goes on with the runs that are not done"); };
+    hooks.progress = [&](const SuiteProgress& now) {
       bar.update((now.number - 1 + now.share) / now.of, std::to_string(now.number) + " of " + std::to_string(now.of) + ", " + now.run);
-    });
+    };
+    summary = run_suite({options.suite, settings, out, shard, options.merge}, hooks);
   }
   if (summary.found > 0)
     std::printf("%d runs were there already, of this program and configuration (%s/units)\n", summary.found, out.c_str());
-  if (summary.missing > 0) {
-    if (options.merge) throw Error(out, std::to_string(summary.missing) + " runs of the suite are missing; expected those of all shards");
-    std::printf("this shard is done; %d runs of others are missing: the results are put together by whoever finishes last\n",
-                summary.missing);
+  if (!summary.missing.empty()) {
+    std::string names;
+    for (const std::string& name : summary.missing) names += (names.empty() ? "" : ", ") + name;
+    if (options.merge)
+      throw Error(out, "runs of the suite are missing: " + names + "; expected those of all shards, driven by this very program");
+    std::printf("this shard is done; of others are missing: %s (the results are put together by whoever finishes last)\n", names.c_str());
     return 0;
   }
+  if (summary.kinds_of_cpu > 1)
+    spdlog::info("driven on {} kinds of CPU, whose kernels differ in last bits: marks and tolerances hold, digests need not",
+                 summary.kinds_of_cpu);
   std::cout << suite_table(summary.name, summary.outcomes) << "\nresults in " << out << " (suite.md, suite.json, junit.xml)\n";
   const auto any = [&](const auto& condition) { return std::any_of(summary.outcomes.begin(), summary.outcomes.end(), condition); };
   if (any([](const SuiteOutcome& outcome) { return !outcome.error.empty(); })) return 2;

@@ -76,7 +76,7 @@ std::vector<std::string> map_files(const OutputConfig& output) {
 
 RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
   make_folder(path);
-  for (const char* name : {"score.json", "report.html"}) remove(name);
+  for (const char* name : {"score.json", "report.html", "baseline.md"}) remove(name);
 }
 
 void RunFolder::remove(const std::string& name) {

@@ -14,7 +14,7 @@ namespace waretwin {
 
 class RunFolder {
  public:
-  // Makes the folder and takes the score and the report of an earlier run away. Throws Error where that cannot be.
+  // Makes the folder and takes the score, the report and the verdict of an earlier run away. Throws Error where that cannot be.
   explicit RunFolder(const std::filesystem::path& path);
 
   // Both create the folders in `name` that are missing.

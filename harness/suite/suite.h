@@ -17,6 +17,7 @@ struct SuiteOutcome {
   std::string run;
   std::string error;                          // why it could not be driven; empty: it was
   std::string digest;                         // of the map
+  std::string cpu;                            // cpu_identity() of where it was driven
   std::vector<std::string> problems;          // marks missed, what is worse than the baseline, what the vehicle touched
   std::vector<std::optional<double>> values;  // of measures()
   bool passed() const { return error.empty() && problems.empty(); }
@@ -36,17 +37,23 @@ struct SuiteRequest {
   bool merge_only = false;  // drives nothing
 };
 
+struct SuiteHooks {
+  std::function<void()> check;  // often; may throw to stop: what is done stays, and the run under way is not done
+  std::function<void(const SuiteProgress&)> progress;
+};
+
 struct SuiteSummary {
   std::string name;
   std::vector<SuiteOutcome> outcomes;  // of all runs; empty where other shards' are missing
-  int missing = 0;                     // runs that other shards have not made yet
+  std::vector<std::string> missing;    // runs that other shards have not made yet
+  int kinds_of_cpu = 1;                // on which they were made
   int found = 0;                       // runs of this shard that were there already
 };
 
 // Drives this shard's runs, each into OUT/NAME as `waretwin run` does, and writes OUT/suite.json, suite.md and junit.xml where it was the
-// last part. A run that OUT/units holds, made by the same program on the same kind of CPU of the same scenario and configuration, is not
-// driven again. All that can be refused is refused before the first drive, with an Error that names the run; what goes wrong later is that
-// run's outcome.
-SuiteSummary run_suite(const SuiteRequest& request, const std::function<void(const SuiteProgress&)>& progress = {});
+// last part. A run that is there already, made by the same program on the same kind of CPU of the same scenario and configuration, is not
+// driven again; one that could not be driven is. Files that the suite names are read before the first drive: what is wrong with them is an
+// Error that names the run. What goes wrong later is that run's outcome.
+SuiteSummary run_suite(const SuiteRequest& request, const SuiteHooks& hooks = {});
 
 }  // namespace waretwin

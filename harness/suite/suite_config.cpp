@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include "core/error.h"
 
@@ -9,12 +10,20 @@ namespace waretwin {
 
 namespace {
 
+// Of a suite's own folder.
+const std::set<std::string> kTaken = {"halls", "units", "suite.json", "suite.md", "junit.xml"};
+
 bool names_a_folder(const std::string& name) {
-  return !name.empty() && name.front() != '.' &&
+  return !kTaken.contains(name) && !name.empty() && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; });
 }
 
 }  // namespace
+
+bool DrawnHall::changed() const {
+  const auto text = [](generate::GenerateConfig hall) { return write_config([&](Fields& f) { hall.visit(f); }); };
+  return text(config) != text(DrawnHall().config);
+}
 
 void SuiteRun::visit(Fields& f) {
   f("scenario", scenario, "scenario file, from the suite's folder; or `generate`");
@@ -32,6 +41,17 @@ void SuiteRun::visit(Fields& f) {
   f("set", set, "key=value, as for run --set");
   f("baseline", baseline, "score.json that the score must not be worse than, from the suite's folder");
   f.group("pass", pass, "what the score must reach");
+  // Of the whole process, not of the run.
+  for (std::size_t i = 0; i < measures().size(); ++i) {
+    if (std::string(measures()[i].name) == "peak_rss_mb" && pass.measures.values[i])
+      f.reject("pass", "peak_rss_mb is no run's own in a suite; expected none");
+  }
+  const RunChoice usual;
+  const bool chosen = choice.profile != usual.profile || choice.detector || !choice.poses.empty() || choice.depth != usual.depth ||
+                      choice.association != usual.association || choice.rate_hz || choice.frames != 0;
+  if (!config.empty() && chosen)
+    f.reject("config", "settles profile, detector, poses, depth, association, rate_hz and frames; expected none of them beside it");
+  if (!generate.asked_for() && generate.changed()) f.reject("generate", "has no style; expected one");
   if (scenario.empty() && !generate.asked_for()) f.reject("scenario", "missing; expected a scenario file, or generate with a style");
   if (!scenario.empty() && generate.asked_for()) f.reject("scenario", "and generate are both named; expected one of them");
 }
@@ -48,7 +68,8 @@ SuiteConfig read_suite(const std::filesystem::path& file) {
   if (suite.runs.empty()) throw Error(file, "suite.runs is empty; expected runs by name");
   for (const auto& entry : suite.runs) {
     if (!names_a_folder(entry.first))
-      throw Error(file, "suite.runs: '" + entry.first + "'; expected a name of letters, digits, '-', '_' and '.'");
+      throw Error(file,
+                  "suite.runs: '" + entry.first + "'; expected a name of letters, digits, '-', '_' and '.', and none of halls and units");
   }
   return suite;
 }

@@ -31,6 +31,7 @@ struct DrawnHall {
   DrawnHall() { config.style.clear(); }
   generate::GenerateConfig config;
   bool asked_for() const { return !config.style.empty(); }
+  bool changed() const;  // whether anything is named
   void visit(Fields& f) { config.visit(f); }
 };
 

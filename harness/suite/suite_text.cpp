@@ -27,12 +27,16 @@ Json json_of(const SuiteOutcome& outcome) {
 
 }  // namespace
 
-std::string outcome_json(const SuiteOutcome& outcome) { return json_of(outcome).dump(2) + "\n"; }
+std::string outcome_json(const SuiteOutcome& outcome) {
+  Json json = json_of(outcome);
+  json["cpu"] = outcome.cpu;
+  return json.dump(2) + "\n";
+}
 
 SuiteOutcome read_outcome(const std::string& text, const std::filesystem::path& name) {
   try {
     const Json json = Json::parse(text);
-    SuiteOutcome outcome{json.at("run"), json.at("error"), json.at("digest"), json.at("problems"), {}};
+    SuiteOutcome outcome{json.at("run"), json.at("error"), json.at("digest"), json.at("cpu"), json.at("problems"), {}};
     for (const Measure& measure : measures()) {
       const auto value = json.at("measures").find(measure.name);
       outcome.values.push_back(value == json.at("measures").end() ? std::nullopt : std::optional(value->get<double>()));

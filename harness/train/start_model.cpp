@@ -1,8 +1,10 @@
 #include "harness/train/start_model.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
+#include "core/digest.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/train/darknet_weights.h"
@@ -11,6 +13,8 @@
 
 namespace waretwin::train {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kExpected = "expected a detector that `waretwin train` made";
 
@@ -56,25 +60,30 @@ at::Tensor rows_of(const at::Tensor& tensor, const NetworkPlan& plan) {
 StartModel read_start_model(const std::string& model) {
   const ModelFiles files = find_model_files(model, {});
   if (!files.darknet()) throw Error(files.onnx, std::string("is an ONNX model; ") + kExpected);
-  StartModel start{model, files.weights, plan_of(files.cfg), read_class_names(files.names), {}};
+  const NetworkPlan plan = plan_of(files.cfg);
   check_darknet_weights(files.weights, read_darknet_cfg(files.cfg));
-  if (static_cast<int>(start.classes.size()) != start.plan.classes) {
-    throw Error(files.names, std::to_string(start.classes.size()) + " names; expected " + std::to_string(start.plan.classes) +
+  const std::string bytes = read_file(files.weights);
+  Digest digest;
+  digest.add(bytes);
+  const fs::path folder = files.weights.has_parent_path() ? files.weights.parent_path() : fs::path(".");
+  StartModel start{model, folder, read_class_names(files.names), Network(plan, 0), digest.hex()};
+  const int classes = start.network.plan().classes;
+  if (static_cast<int>(start.classes.size()) != classes) {
+    throw Error(files.names, std::to_string(start.classes.size()) + " names; expected " + std::to_string(classes) +
                                  ", as many as the network has classes");
   }
-  start.bytes = read_file(files.weights);
+  try {
+    read_darknet_weights(bytes, start.network);
+  } catch (const Error& error) {
+    throw Error(files.weights, error.what());
+  }
   return start;
 }
 
 void start_from(const StartModel& model, const std::vector<std::string>& classes, Network& network) {
-  WARETWIN_CHECK(network.plan().anchors.size() == model.plan.anchors.size(), "anchors are the model's");
+  const Network& known = model.network;
+  WARETWIN_CHECK(network.plan().anchors.size() == known.plan().anchors.size(), "anchors are the model's");
   const at::NoGradGuard no_gradients;
-  Network known(model.plan, 0);
-  try {
-    read_darknet_weights(model.bytes, known);
-  } catch (const Error& error) {
-    throw Error(model.weights, error.what());
-  }
   for (std::size_t i = 0; i + 1 < network.layers().size(); ++i) {
     const Network::Parameters &to = network.layers()[i], &from = known.layers()[i];
     if (!to.weight.defined()) continue;

@@ -10,11 +10,11 @@
 namespace waretwin::train {
 
 struct StartModel {
-  std::string given;  // what the user called it
-  std::filesystem::path weights;
-  NetworkPlan plan;
+  std::string given;             // what the user called it
+  std::filesystem::path folder;  // that holds its files
   std::vector<std::string> classes;
-  std::string bytes;  // of the weights file
+  Network network;
+  std::string digest;  // of the weights file
 };
 
 // `model`: what a detector may be called (mapper/detect/model_files.h). Throws Error where it is no detector that `waretwin train` made.

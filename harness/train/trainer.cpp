@@ -69,10 +69,18 @@ std::string config_text(TrainConfig config) {
   return write_config([&](Fields& f) { f.group("train", config, "training of a detector"); });
 }
 
+std::optional<StartModel> model_to_start_from(const TrainingRequest& request) {
+  if (request.start.empty()) return std::nullopt;
+  StartModel start = read_start_model(request.start);
+  if (fs::exists(request.out) && fs::equivalent(start.folder, request.out))
+    throw Error(request.out, "holds the detector to start from; expected another --out");
+  return start;
+}
+
 // With what is left to the machine decided, so that train.yaml and the checkpoint say it.
 TrainConfig decided(TrainConfig config, const std::optional<StartModel>& start) {
   config.precision = decided_precision(config.precision);
-  if (start) config.anchors = static_cast<int>(start->plan.anchors.size());
+  if (start) config.anchors = static_cast<int>(start->network.plan().anchors.size());
   return config;
 }
 
@@ -98,9 +106,7 @@ std::string lasting_text(const std::string& name, const TrainConfig& config, con
   }
   text += "\nlabels: " + boxes.hex() + "\nfrom: ";
   if (!start) return text + "drawn weights\n";
-  Digest weights;
-  weights.add(start->bytes);
-  return text + weights.hex() + "\n";
+  return text + start->digest + "\n";
 }
 
 void check_same(const fs::path& file, const std::string& before, const std::string& now) {
@@ -137,7 +143,7 @@ class Training {
   Training(const TrainingRequest& request, const TrainingHooks& hooks)
       : request_(request),
         hooks_(hooks),
-        start_(request.start.empty() ? std::nullopt : std::optional(read_start_model(request.start))),
+        start_(model_to_start_from(request)),
         config_(decided(request.config, start_)),
         type_(type_of(config_.precision)),
         train_(read_split(request.dataset, "train")),
@@ -150,8 +156,6 @@ class Training {
         train_pictures_(train_, cached_size(),
                         cache_bytes() - std::min(cache_bytes() / 2, bytes_of(valid_, {config_.width, config_.height}))) {
     steps_per_epoch_ = static_cast<int>(epoch_order(train_.images.size(), config_, 0).size()) / config_.batch;
-    if (start_ && fs::exists(request.out) && fs::equivalent(start_->weights.parent_path(), request.out))
-      throw Error(request.out, "holds the detector to start from; expected another --out");
     if (train_.classes != valid_.classes) throw Error(request.dataset, "splits train and valid name different classes");
     if (config_.epochs == 0 && config_.minutes == 0.0) {
       config_.epochs = std::max(kLeastEpochs, static_cast<int>(std::ceil(kUsualPictures / (steps_per_epoch_ * config_.batch))));
@@ -177,7 +181,7 @@ class Training {
   NetworkPlan make_plan() const {
     const std::vector<BoxShape> shapes = shapes_in_cells(train_, config_);
     return plan_network(config_.width, config_.height, static_cast<int>(train_.classes.size()),
-                        start_ ? start_->plan.anchors : find_anchors(shapes, config_.anchors));
+                        start_ ? start_->network.plan().anchors : find_anchors(shapes, config_.anchors));
   }
 
   std::int64_t cache_bytes() const { return static_cast<std::int64_t>(config_.cache_mb) * kMegabyte; }

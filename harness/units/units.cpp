@@ -1,6 +1,11 @@
 #include "harness/units/units.h"
 
+#include <link.h>
+
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <vector>
 
 #include "core/cpu_features.h"
 #include "core/error.h"
@@ -27,6 +32,22 @@ void add(Digest& digest, const TextureUse& use) {
   add(digest, use.uv_transform);
 }
 
+// Name and size of each shared library, sorted: another version of one is nearly always another size.
+std::vector<std::string> libraries() {
+  std::vector<std::string> found;
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* list) {
+        std::error_code none;
+        const std::filesystem::path file = info->dlpi_name;
+        const auto size = std::filesystem::file_size(file, none);
+        if (!none) static_cast<std::vector<std::string>*>(list)->push_back(file.filename().string() + " " + std::to_string(size));
+        return 0;
+      },
+      &found);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
@@ -48,11 +69,17 @@ const std::string& program_identity() {
   static const std::string identity = [] {
     Digest digest;
     digest.add(read_file("/proc/self/exe"));
-    digest.add(cpu_model());
-    for (const std::string& feature : cpu_features()) digest.add(feature);
+    for (const std::string& library : libraries()) digest.add(library);
     return digest.hex();
   }();
   return identity;
+}
+
+std::string cpu_identity() {
+  Digest digest;
+  digest.add(cpu_model());
+  for (const std::string& feature : cpu_features()) digest.add(feature);
+  return digest.hex();
 }
 
 void add_scene(const Scene& scene, Digest& digest) {
@@ -78,7 +105,11 @@ void add_scene(const Scene& scene, Digest& digest) {
       add(digest, *use);
     }
     digest.add(int{material.alpha_mask});
-    for (const float value : {material.metallic, material.roughness, material.normal_scale, material.alpha_cutoff}) digest.add(value);
+    // Not a number where the glTF file does not say: one bit pattern for all.
+    const float infrared = std::isnan(material.reflectivity_850nm) ? -1.0f : material.reflectivity_850nm;
+    for (const float value :
+         {material.metallic, material.roughness, material.normal_scale, material.alpha_cutoff, infrared, material.retroreflection})
+      digest.add(value);
   }
   for (const Instance& instance : scene.instances) {
     digest.add(instance.mesh);
@@ -92,7 +123,14 @@ void add_scene(const Scene& scene, Digest& digest) {
   }
   add(digest, scene.ambient);
   add(digest, scene.background);
-  for (const TrueObject& object : scene.objects) digest.add(object.class_name);
+  for (const TrueObject& object : scene.objects) {
+    digest.add(object.id);
+    digest.add(object.name);
+    digest.add(object.class_name);
+    add(digest, object.cuboid.centre);
+    add(digest, object.cuboid.size);
+    digest.add(object.cuboid.yaw);
+  }
   for (const Mover& mover : scene.movers) digest.add(mover.instances);
 }
 

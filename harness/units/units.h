@@ -20,10 +20,13 @@ struct Shard {
 // "I/N", I from 0. Throws Error for anything else.
 Shard parse_shard(const std::string& text);
 
-// What the program is: its file's bytes and the CPU, by which kernels are picked.
+// What the program is: its file's bytes, and the shared libraries by name and size.
 const std::string& program_identity();
+// What kind of CPU this is, by which kernels are picked that differ in last bits. A unit made on another is as good for a table, but the
+// same machine would not make the same bytes again.
+std::string cpu_identity();
 
-// Adds what the models became, whatever files they came from: all that rays meet.
+// Adds what the models became, whatever files they came from: all that rays meet, and the true objects.
 void add_scene(const Scene& scene, Digest& digest);
 
 class UnitStore {
@@ -35,8 +38,9 @@ class UnitStore {
   // Atomic.
   void write(const std::string& name, std::string_view result) const;
 
- private:
   std::filesystem::path file(const std::string& name) const;
+
+ private:
   std::filesystem::path folder_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "core/files.h"
 #include "harness/suite/suite_text.h"
 #include "tests/support/expect_error.h"
@@ -15,12 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A second or less: a bare room, true boxes and poses, a few frames.
+std::string quick(const std::string& more, int seed = 3) {
+  return "{generate: {style: flat, seed: " + std::to_string(seed) +
+         ", coverage: 0}, detector: truth, poses: truth, depth: truth, frames: 4" + more + "}\n";
+}
+
+std::string three_runs() {
+  return "suite:\n  name: small\n  runs:\n    a: " + quick(", pass: {contacts: 0, ate_rmse_m: 0.001}") + "    b: " + quick("", 4) +
+         "    c: " + quick("", 5);
+}
+
 class Suite : public ::testing::Test {
  protected:
-  // A second or less each: a bare room, true boxes and poses, a few frames.
-  static std::string quick(const std::string& more) {
-    return "{generate: {style: flat, seed: 3, coverage: 0}, detector: truth, poses: truth, depth: truth, frames: 4" + more + "}\n";
-  }
   SuiteSummary run(const std::string& yaml, const std::string& out, Shard shard = {}, bool merge_only = false) {
     const fs::path file = folder_.path() / "suite.yaml";
     write_file(file, yaml);
@@ -32,20 +40,12 @@ class Suite : public ::testing::Test {
   std::vector<Setting> settings_;
 };
 
-std::string three_runs() {
-  return "suite:\n  name: small\n  runs:\n    a: {generate: {style: flat, seed: 3, coverage: 0}, detector: truth, poses: truth, depth: "
-         "truth, "
-         "frames: 4, pass: {contacts: 0, ate_rmse_m: 0.001}}\n    b: {generate: {style: flat, seed: 4, coverage: 0}, detector: truth, "
-         "poses: "
-         "truth, depth: truth, frames: 4}\n    c: {generate: {style: flat, seed: 5, coverage: 0}, detector: none, poses: truth, depth: "
-         "truth, frames: 2}\n";
-}
-
 TEST_F(Suite, MarksAreReachedOrSaid) {
-  const SuiteSummary summary = run("suite:\n  runs:\n    good: " + quick(", pass: {ate_rmse_m: 0.001, contacts: 0}") +
-                                       "    bad: " + quick(", pass: {recall: 1, surface_found: 1}") + "    broken: " +
-                                       "{generate: {style: flat, seed: 3, coverage: 0}, detector: nowhere.json, frames: 4}\n",
-                                   "out");
+  const SuiteSummary summary = run(
+      "suite:\n  runs:\n    good: " + quick(", pass: {ate_rmse_m: 0.001, contacts: 0}") +
+          "    bad: " + quick(", pass: {recall: 1, surface_found: 1}") +
+          "    broken: " + "{generate: {style: flat, seed: 3, coverage: 0}, detector: truth, frames: 4, set: [mapper.poses=recorded]}\n",
+      "out");
   ASSERT_EQ(summary.outcomes.size(), 3u);
   const SuiteOutcome &bad = summary.outcomes[0], &broken = summary.outcomes[1], &good = summary.outcomes[2];
   EXPECT_TRUE(good.passed());
@@ -54,7 +54,7 @@ TEST_F(Suite, MarksAreReachedOrSaid) {
   EXPECT_TRUE(std::any_of(bad.problems.begin(), bad.problems.end(), [](const std::string& problem) {
     return problem.starts_with("surface_found 0.") && problem.ends_with("expected at least 1");
   }));
-  EXPECT_NE(broken.error.find("nowhere.json"), std::string::npos) << broken.error;
+  EXPECT_NE(broken.error.find("poses 'recorded'"), std::string::npos) << broken.error;
   EXPECT_TRUE(fs::exists(file("out/good/score.json")));
   EXPECT_TRUE(fs::exists(file("out/good/report.html")));
   const std::string xml = read_file(file("out/junit.xml"));
@@ -78,11 +78,11 @@ TEST_F(Suite, AScoreIsHeldAgainstItsBaseline) {
 TEST_F(Suite, ShardsTogetherAreTheWhole) {
   const SuiteSummary whole = run(three_runs(), "whole");
   EXPECT_EQ(whole.outcomes.size(), 3u);
-  EXPECT_EQ(run(three_runs(), "parts", {1, 2}).missing, 2);
+  EXPECT_EQ(run(three_runs(), "parts", {1, 2}).missing.size(), 2u);
   EXPECT_FALSE(fs::exists(file("parts/suite.json")));
-  EXPECT_EQ(run(three_runs(), "parts", {}, true).missing, 2);
+  EXPECT_EQ(run(three_runs(), "parts", {}, true).missing.size(), 2u);
   const SuiteSummary last = run(three_runs(), "parts", {0, 2});
-  EXPECT_EQ(last.missing, 0);
+  EXPECT_TRUE(last.missing.empty());
   for (const char* name : {"suite.json", "suite.md", "junit.xml"})
     EXPECT_EQ(read_file(file(std::string("parts/") + name)), read_file(file(std::string("whole/") + name))) << name;
 }
@@ -105,6 +105,26 @@ TEST_F(Suite, WhatIsDoneIsNotDrivenAgain) {
   EXPECT_EQ(run(three_runs(), "out").found, 0);
 }
 
+TEST_F(Suite, AStoppedRunIsNoResult) {
+  write_file(file("suite.yaml"), three_runs());
+  const SuiteRequest request{file("suite.yaml"), {}, file("out"), {}, false};
+  SuiteHooks hooks;
+  hooks.progress = [](const SuiteProgress& now) {
+    if (now.run == "b") throw Error("stopped by a signal");
+  };
+  EXPECT_ERROR(run_suite(request, hooks), "stopped by a signal");
+  EXPECT_EQ(run_suite(request).found, 1);
+}
+
+TEST_F(Suite, AnotherDetectorIsAnotherRun) {
+  const std::string yaml = "suite:\n  runs:\n    a: {generate: {style: flat, seed: 3, coverage: 0}, detector: boxes.json, frames: 2}\n";
+  write_file(file("boxes.json"), R"({"frames": []})");
+  EXPECT_TRUE(run(yaml, "out").outcomes.at(0).error.empty());
+  EXPECT_EQ(run(yaml, "out").found, 1);
+  write_file(file("boxes.json"), R"({ "frames": []})");
+  EXPECT_EQ(run(yaml, "out").found, 0);
+}
+
 TEST_F(Suite, BadSuitesAreRefusedBeforeTheFirstDrive) {
   EXPECT_ERROR(run("suite: {runs: {}}", "out"), "suite.yaml", "suite.runs is empty");
   EXPECT_ERROR(run("suite:\n  runs:\n    a: {profile: best}\n", "out"), "suite.yaml", "scenario", "missing");
@@ -115,11 +135,16 @@ TEST_F(Suite, BadSuitesAreRefusedBeforeTheFirstDrive) {
   EXPECT_ERROR(run("suite:\n  runs:\n    a: " + quick(", set: [sensors.cameras.camera.rate=1]"), "out"), "run 'a'",
                "sensors.cameras.camera.rate");
   EXPECT_ERROR(run("suite:\n  runs:\n    a: " + quick(", baseline: none.json"), "out"), "run 'a'", "none.json");
+  EXPECT_ERROR(run("suite:\n  runs:\n    a: {generate: {style: flat, coverage: 0}, detector: none.json}\n", "out"), "run 'a'", "none.json");
+  EXPECT_ERROR(run("suite:\n  runs:\n    a: " + quick(", config: c.yaml"), "out"), "config", "expected none of them");
+  EXPECT_ERROR(run("suite:\n  runs:\n    a: {scenario: s.yaml, generate: {seed: 3}}\n", "out"), "generate", "no style");
+  EXPECT_ERROR(run("suite:\n  runs:\n    units: " + quick(""), "out"), "'units'", "expected a name");
+  EXPECT_ERROR(run("suite:\n  runs:\n    a: " + quick(", pass: {peak_rss_mb: 100}"), "out"), "peak_rss_mb");
   EXPECT_FALSE(fs::exists(file("out/a/score.json")));
 }
 
 TEST(SuiteText, AnOutcomeComesBackAsItWas) {
-  SuiteOutcome outcome{"a", "", "00ff", {"recall 0.5, expected at least 1"}, std::vector<std::optional<double>>(measures().size())};
+  SuiteOutcome outcome{"a", "", "00ff", "cpu", {"recall 0.5, expected at least 1"}, std::vector<std::optional<double>>(measures().size())};
   outcome.values[0] = 1.0 / 3.0;
   const SuiteOutcome back = read_outcome(outcome_json(outcome), "x.json");
   EXPECT_EQ(back.run, outcome.run);

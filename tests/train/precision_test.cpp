@@ -48,7 +48,9 @@ TEST(Precision, BFloat16LearnsAboutTheSame) {
 }
 
 TEST(Precision, AutoIsWhatTheProcessorDoesFast) {
-  EXPECT_EQ(type_of("auto"), has_fast_bfloat16() ? at::kBFloat16 : at::kFloat);
+  EXPECT_EQ(decided_precision("auto"), has_fast_bfloat16() ? "bfloat16" : "float32");
+  EXPECT_EQ(decided_precision("float32"), "float32");
+  EXPECT_EQ(decided_precision("bfloat16"), "bfloat16");
   EXPECT_EQ(type_of("float32"), at::kFloat);
   EXPECT_EQ(type_of("bfloat16"), at::kBFloat16);
 }
