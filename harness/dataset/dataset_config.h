@@ -83,8 +83,8 @@ struct DatasetConfig {
   RenderOptions render;
   std::string isa = "avx2";
 
-  // Pictures of one hall. Unless it is set, as many as make at least four hundred halls, at most 10: small sets live on variety, and in large ones
-  // a new hall must not cost more than its pictures.
+  // Pictures of one hall. Unless it is set, as many as make at least four hundred halls, at most 10: small sets live on variety, and in
+  // large ones a new hall must not cost more than its pictures.
   int hall_size() const;
   void visit(Fields& f);
 };
