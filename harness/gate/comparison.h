@@ -20,7 +20,7 @@ struct ComparedValue {
 
 struct Comparison {
   std::vector<ComparedValue> values;   // the measures that either score has
-  std::vector<ComparedValue> objects;  // 3D IoU of true objects that changed by more than the tolerance, or that one score lacks
+  std::vector<ComparedValue> objects;  // 3D IoU of true objects that changed by more than the tolerance
   std::vector<std::string> notes;      // what makes the two scores different by itself: another scenario, seed, CPU
   bool same_map = false;               // equal digests
 

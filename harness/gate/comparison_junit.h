@@ -1,4 +1,4 @@
-// A comparison or missed marks as test results.
+// A comparison as test results.
 #pragma once
 
 #include "harness/gate/comparison.h"
