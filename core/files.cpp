@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/process_name.h"
 
 namespace waretwin {
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path temporary_name(const fs::path& path) {
-  fs::path name = path.parent_path() / ("." + path.stem().string() + ".partial-" + std::to_string(::getpid()));
+  fs::path name = path.parent_path() / ("." + path.stem().string() + ".partial-" + process_name());
   name += path.extension();
   return name;
 }

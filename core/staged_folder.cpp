@@ -1,12 +1,11 @@
 #include "core/staged_folder.h"
 
-#include <unistd.h>
-
 #include <string>
 #include <system_error>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/process_name.h"
 
 namespace waretwin {
 
@@ -24,7 +23,7 @@ fs::path settled(const fs::path& place) {
 
 fs::path beside(const fs::path& place, const std::string& word) {
   fs::path name = place;
-  name += "." + word + "-" + std::to_string(::getpid());
+  name += "." + word + "-" + process_name();
   return name;
 }
 

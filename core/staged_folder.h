@@ -5,7 +5,7 @@
 
 namespace waretwin {
 
-// Made as NAME.partial-PID beside its final place. commit() moves it there; without it the destructor removes the folder, and a killed
+// Made as NAME.partial-PROCESS beside its final place. commit() moves it there; without it the destructor removes the folder, and a killed
 // process leaves only the partial one, under a name that nobody takes for the result.
 class StagedFolder {
  public:

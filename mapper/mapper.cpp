@@ -63,7 +63,7 @@ std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const s
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info)
-    : config_(config), stages_(std::move(stages)), info_(info) {
+    : config_(config), stages_(std::move(stages)), info_(info), own_body_(info) {
   X_WR_ = world_from_recording(info);
   map_.X_RW = X_WR_.inverse();
   map_.volume = std::make_unique<TsdfVolume>(config.integrate);
@@ -102,29 +102,33 @@ void Mapper::take(const OdometryReading& reading) {
   pending_localise_ms_ += watch.lap();
 }
 
-void Mapper::take(const LaserScan& scan) {
+void Mapper::take(LaserScan scan) {
   Stopwatch watch;
+  own_body_.mask(scan);
   stages_.localiser->add(scan);
   // One laser localises, the first by name: a scan of another one brings no pose.
   if (!info_.lasers.empty() && scan.sensor != info_.lasers.begin()->first) return;
-  if (const auto X_WB = stages_.localiser->current_pose()) map_.trajectory.push_back({scan.stamp, *X_WB, stages_.localiser->covariance()});
+  if (const auto X_WB = stages_.localiser->current_pose())
+    map_.trajectory.push_back({scan.stamp, *X_WB, stages_.localiser->covariance(), stages_.localiser->localised()});
   pending_localise_ms_ += watch.lap();
 }
 
-bool Mapper::due(Stamp stamp) {
+// Each camera has the mapping rate for itself.
+bool Mapper::due(const RgbdFrame& frame) {
   if (config_.rate_hz <= 0.0) return true;
-  if (!first_frame_) first_frame_ = stamp;
+  if (!first_frame_) first_frame_ = frame.stamp;
   // A frame that misses its slot by rounding of stamps still belongs to it.
   constexpr double kSlack = 1e-3;
-  const auto slot = static_cast<std::int64_t>(std::floor(to_seconds(stamp - *first_frame_) * config_.rate_hz + kSlack));
-  if (last_slot_ && slot <= *last_slot_) return false;
-  last_slot_ = slot;
+  const auto slot = static_cast<std::int64_t>(std::floor(to_seconds(frame.stamp - *first_frame_) * config_.rate_hz + kSlack));
+  const auto [last, is_new] = last_slots_.try_emplace(frame.sensor, slot);
+  if (!is_new && slot <= last->second) return false;
+  last->second = slot;
   return true;
 }
 
 void Mapper::take(RgbdFrame frame) {
   ++map_.frames_seen;
-  if (!due(frame.stamp)) {
+  if (!due(frame)) {
     ++map_.frames_dropped_by_rate;
     return;
   }
@@ -146,6 +150,7 @@ void Mapper::take(RgbdFrame frame) {
   }
   if (info_.lasers.empty()) map_.trajectory.push_back({frame.stamp, *X_WB});
   load_pictures(frame);
+  own_body_.mask(frame);
   map_frame(frame, *X_WB * camera->second.X_BC, report);
 }
 

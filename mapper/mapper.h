@@ -11,6 +11,7 @@
 #include "mapper/mapper_config.h"
 #include "mapper/object_list.h"
 #include "mapper/output/map_archive.h"
+#include "mapper/own_body_mask.h"
 #include "mapper/stages.h"
 #include "sensors/sensor_stream.h"
 
@@ -20,6 +21,7 @@ struct TrajectoryPoint {
   Stamp stamp = 0;
   Pose X_WB = Pose::Identity();
   std::optional<Eigen::Matrix3d> covariance = std::nullopt;  // Localiser::covariance
+  bool localised = true;                                     // Localiser::localised
 };
 
 // What one mapped frame took and found.
@@ -73,20 +75,21 @@ class Mapper {
 
  private:
   void take(const OdometryReading& reading);
-  void take(const LaserScan& scan);
+  void take(LaserScan scan);
   void take(RgbdFrame frame);
-  bool due(Stamp stamp);
+  bool due(const RgbdFrame& frame);
   void map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport report);
 
   MapperConfig config_;
   Stages stages_;
   StreamInfo info_;
+  OwnBodyMask own_body_;
   ObjectMap map_;
   double pending_localise_ms_ = 0.0;
   Pose X_WR_ = Pose::Identity();
   std::optional<Stamp> last_stamp_;
   std::optional<Stamp> first_frame_;
-  std::optional<std::int64_t> last_slot_;  // of the mapping rate
+  std::map<std::string, std::int64_t> last_slots_;  // of the mapping rate, by camera
 };
 
 }  // namespace waretwin

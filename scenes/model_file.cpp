@@ -21,14 +21,23 @@ std::string problem_with(const fs::path& file, const fs::path& folder) {
   return "";
 }
 
+void check(Fields& f, const char* key, const fs::path& file, const fs::path& folder) {
+  const std::string extension = file.extension().string();
+  if (extension != ".glb" && extension != ".gltf") f.reject(key, "is '" + file.string() + "'; expected a .gltf or .glb file");
+  const std::string problem = folder.empty() ? "" : problem_with(file, folder);
+  if (!problem.empty()) f.reject(key, problem);
+}
+
 }  // namespace
 
 void visit_model_file(Fields& f, fs::path& file, const fs::path& folder) {
   f("file", file, "glTF file (.gltf or .glb), relative to the scenario's folder", {.required = true});
-  const std::string extension = file.extension().string();
-  if (extension != ".glb" && extension != ".gltf") f.reject("file", "is '" + file.string() + "'; expected a .gltf or .glb file");
-  const std::string problem = folder.empty() ? "" : problem_with(file, folder);
-  if (!problem.empty()) f.reject("file", problem);
+  check(f, "file", file, folder);
+}
+
+void visit_optional_model(Fields& f, const char* key, fs::path& file, const fs::path& folder, const char* doc) {
+  f(key, file, doc);
+  if (!file.empty()) check(f, key, file, folder);
 }
 
 }  // namespace waretwin

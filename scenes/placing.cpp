@@ -43,7 +43,7 @@ Instance SceneBuilder::shared_instance(const Model& model, std::size_t index, co
   return instance;
 }
 
-void SceneBuilder::add_mover(const Model& model, const std::string& name) {
+std::vector<int> SceneBuilder::add_body(const Model& model) {
   for (const ModelNode& node : model.nodes) {
     if (node.class_name && !node.class_name->empty()) {
       throw Error(model.file, "node '" + node.name + "' is of class '" + *node.class_name + "'; what moves can be no true object");
@@ -51,14 +51,17 @@ void SceneBuilder::add_mover(const Model& model, const std::string& name) {
   }
   if (model.content.triangle_count() == 0) throw Error(model.file, "has no triangles; expected something that can be seen and touched");
   const Offsets offsets = share(model);
-  Mover mover;
-  mover.name = name;
+  std::vector<int> instances;
   for (std::size_t i = 0; i < model.content.instances.size(); ++i) {
-    mover.instances.push_back(static_cast<int>(scene_.instances.size()));
+    instances.push_back(static_cast<int>(scene_.instances.size()));
     scene_.instances.push_back(shared_instance(model, i, offsets));
   }
-  scene_.movers.push_back(std::move(mover));
+  return instances;
 }
+
+void SceneBuilder::add_mover(const Model& model, const std::string& name) { scene_.movers.push_back({name, add_body(model)}); }
+
+void SceneBuilder::add_vehicle(const Model& model) { scene_.vehicle = add_body(model); }
 
 void SceneBuilder::place(const Model& model, const Placing& placing) {
   const Offsets offsets = share(model);

@@ -30,6 +30,9 @@ class SceneBuilder {
   // triangles or when one of its nodes names a class: true objects stand still.
   void add_mover(const Model& model, const std::string& name);
 
+  // The robot's own model (Scene::vehicle), in the same way.
+  void add_vehicle(const Model& model);
+
   // Nodes that each rule has matched so far.
   const std::vector<int>& matched() const { return matched_; }
 
@@ -40,6 +43,7 @@ class SceneBuilder {
     int texture = 0, material = 0, mesh = 0;
   };
   Offsets share(const Model& model);
+  std::vector<int> add_body(const Model& model);
   Instance shared_instance(const Model& model, std::size_t index, const Offsets& offsets) const;
 
   std::vector<TruthRule> rules_;

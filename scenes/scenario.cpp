@@ -61,6 +61,9 @@ void RobotConfig::visit(Fields& f) {
   f("turn_rate_deg_s", turn_rate_deg_s, "largest rate of turn", {.min = 0.5, .max = 720});
   f("turn_acceleration_deg_s2", turn_acceleration_deg_s2, "largest change of the rate of turn", {.min = 0.5, .max = 7200});
   f.group("drive", drive, "how it rolls");
+  visit_optional_model(
+      f, "model", model, folder,
+      "glTF file of the vehicle (forward is x, origin on the floor under its middle), seen by its own sensors; empty: none");
   f.list("route", route, "waypoints in the order in which the vehicle visits them", {.required = true});
   if (route.empty()) f.reject("route", "has no waypoint; expected at least one");
 }
@@ -115,6 +118,7 @@ Scenario load_scenario(const fs::path& file, const std::vector<Setting>& setting
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   for (ModelPlacement& placement : scenario.models) placement.folder = folder;
   scenario.motion.set_folder(folder);
+  scenario.robot.folder = folder;
   read_config(file, visit);
   if (!settings.empty()) apply_settings(settings, visit);
   if (scenario.name.empty()) scenario.name = fs::absolute(file).parent_path().filename().string();
@@ -145,6 +149,7 @@ Scene build_scene(const Scenario& scenario) {
   for (const ItemStream& stream : scenario.motion.streams) add_movers(stream.body.file, stream.name, stream.most);
   for (const ClutterConfig& thing : scenario.motion.clutter) add_movers(thing.body.file, thing.name, thing.count);
   for (const WalkerConfig& walker : scenario.motion.walkers) add_movers(walker.file, walker.name, 1);
+  if (!scenario.robot.model.empty()) builder.add_vehicle(model_of(scenario.robot.model));
   for (std::size_t i = 0; i < scenario.truth.size(); ++i) {
     if (builder.matched()[i] > 0) continue;
     throw Error(scenario.file, "truth." + std::to_string(i) + ".pattern '" + scenario.truth[i].pattern + "' matches no node of any model");

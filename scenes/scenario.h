@@ -65,6 +65,8 @@ struct RobotConfig {
   double turn_rate_deg_s = 45.0;
   double turn_acceleration_deg_s2 = 90.0;
   DriveConfig drive;
+  std::filesystem::path model;  // glTF of the vehicle in its frame B (forward is x), seen by its own sensors; empty: they see nothing of it
+  std::filesystem::path folder;  // of the scenario; see ModelPlacement
   std::vector<Waypoint> route;
   void visit(Fields& f);
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <map>
 #include <optional>
 #include <string>
@@ -49,6 +50,8 @@ struct StreamInfo {
   Pose X_WB_start = Pose::Identity();
   // Unit vector that points up in the recording's own world.
   Eigen::Vector3d up_W = Eigen::Vector3d::UnitZ();
+  // What of B's space the vehicle itself takes up, where its sensors see it: whatever is measured in this box is the vehicle.
+  std::optional<Eigen::AlignedBox3d> own_body_B;
   std::optional<int> frame_count;    // camera frames, where known before the end
   std::optional<double> duration_s;  // where known before the end
 };

@@ -19,14 +19,13 @@ LaserScan empty_scan(const LaserConfig& config, const std::string& sensor, Stamp
 }
 
 LaserScan ideal_scan(const RayCaster& ray_caster, const LaserConfig& config, const std::string& sensor, Stamp stamp,
-                     const std::function<Pose(Stamp)>& X_WB) {
+                     const std::function<Pose(Stamp)>& X_WL_at) {
   LaserScan scan = empty_scan(config, sensor, stamp);
-  const Pose X_BL = config.mount.X_BL();
   const auto beams = static_cast<std::size_t>(config.beams);
   std::vector<Ray> rays(beams);
   for (std::size_t i = 0; i < beams; ++i) {
     const Stamp moment = stamp + static_cast<Stamp>(i) * scan.beam_interval;
-    const Pose X_WL = X_WB(moment) * X_BL;
+    const Pose X_WL = X_WL_at(moment);
     rays[i].time = ray_caster.time_of(moment);
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     rays[i].origin = X_WL.translation().cast<float>();

@@ -45,15 +45,14 @@ float range_of(std::array<Echo, kLooks>& echoes, const LaserSpot& spot) {
 }  // namespace
 
 LaserScan spot_scan(const RayCaster& ray_caster, const Surfaces& surfaces, const LaserConfig& config, const std::string& sensor,
-                    Stamp stamp, const std::function<Pose(Stamp)>& X_WB) {
+                    Stamp stamp, const std::function<Pose(Stamp)>& X_WL_at) {
   const LaserSpot& spot = config.spot;
   LaserScan scan = empty_scan(config, sensor, stamp);
-  const Pose X_BL = config.mount.X_BL();
   const auto beams = static_cast<std::size_t>(config.beams);
   std::vector<Ray> rays(beams * kLooks);
   for (std::size_t i = 0; i < beams; ++i) {
     const Stamp moment = stamp + static_cast<Stamp>(i) * scan.beam_interval;
-    const Pose X_WL = X_WB(moment) * X_BL;
+    const Pose X_WL = X_WL_at(moment);
     const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
     const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0.0), left(-std::sin(angle), std::cos(angle), 0.0);
     for (std::size_t k = 0; k < kLooks; ++k) {

@@ -296,6 +296,7 @@ RayCaster::RayCaster(std::shared_ptr<const Scene> scene, const RayCasterOptions&
   s.top.reset(rtcNewScene(s.device.get()));
   rtcSetSceneFlags(s.top.get(), RTC_SCENE_FLAG_ROBUST);
   for (std::size_t i = 0; i < s.scene->instances.size(); ++i) s.add_instance(i);
+  for (const int instance : s.scene->vehicle) set_present(instance, false);
   commit();
 }
 

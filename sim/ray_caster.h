@@ -3,6 +3,7 @@
 // Sensors see both sides of every triangle, whatever its material says: a thin panel modelled as one sheet is as solid as the real one.
 // Parts of an alpha-masked surface below the cutoff are holes. Results are the same at any thread count: the trees are built by one
 // thread, and a ray's result depends on nothing but the ray and the packet of eight that it travels in.
+// The vehicle's own model (Scene::vehicle) is not there until somebody places it.
 #pragma once
 
 #include <Eigen/Geometry>

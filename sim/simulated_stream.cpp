@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "sensors/laser_noise.h"
+#include "sensors/mount_error.h"
 #include "sensors/odometry_model.h"
 #include "sim/colour_camera.h"
 #include "sim/depth_camera.h"
@@ -60,6 +61,19 @@ std::vector<Stamp> camera_stamps(const std::vector<Source>& sources) {
   return stamps;
 }
 
+// The box of the vehicle's model, a little wider than it, since depth and ranges err. Nothing but the vehicle can be in there.
+std::optional<Eigen::AlignedBox3d> own_body(const Scene& scene) {
+  if (scene.vehicle.empty()) return std::nullopt;
+  constexpr double kMargin = 0.03;
+  Eigen::AlignedBox3d box;
+  for (const int index : scene.vehicle) {
+    const Instance& instance = scene.instances[static_cast<std::size_t>(index)];
+    for (const Eigen::Vector3f& p : scene.meshes[static_cast<std::size_t>(instance.mesh)].positions)
+      box.extend((instance.X_WM * p).cast<double>());
+  }
+  return Eigen::AlignedBox3d(box.min() - Eigen::Vector3d::Constant(kMargin), box.max() + Eigen::Vector3d::Constant(kMargin));
+}
+
 }  // namespace
 
 void SimulationConfig::visit(Fields& f) {
@@ -84,6 +98,7 @@ struct SimulatedStream::State {
   std::map<std::string, ColourCamera> colour_cameras;
   std::map<std::string, std::unique_ptr<DepthCamera>> depth_cameras;
   std::map<std::string, LaserNoiseModel> laser_noise;
+  std::map<std::string, MountError> mounts;  // of cameras and lasers
   OdometryModel odometry;
   StreamInfo info;
   std::vector<Source> sources;
@@ -93,7 +108,10 @@ struct SimulatedStream::State {
   double last_frame_ms = 0.0;
 
   void describe();
-  Pose X_WC(const std::string& camera, Stamp stamp) const { return motion.X_WB(stamp) * info.cameras.at(camera).X_BC; }
+  // Where it rolls no vehicle shakes: the speed is that of the last hundredth of a second.
+  double speed(const MountError& mount, Stamp stamp) const;
+  Pose X_WC(const std::string& camera, Stamp stamp) const;
+  Pose X_WL(const std::string& laser, Stamp stamp) const;
   LaserScan scan(const std::string& name, Stamp stamp);
   void render(RgbdFrame& frame, const HallMoment& moment);
 };
@@ -119,9 +137,11 @@ SimulatedStream::State::State(const Scenario& a_scenario, std::shared_ptr<const 
     const Stamp turn = static_cast<Stamp>(laser.beams - 1) * laser.beam_interval();
     sources.push_back({SensorKind::kLaser, name, laser.rate_hz, turns_until(end - turn, laser.rate_hz)});
     laser_noise.emplace(name, LaserNoiseModel(laser, scenario.seed, name));
+    mounts.emplace(name, MountError(laser.mount, scenario.seed, name));
   }
   for (const auto& [name, camera] : sensors.cameras) {
     sources.push_back({SensorKind::kCamera, name, camera.rate_hz, turns_until(end, camera.rate_hz)});
+    mounts.emplace(name, MountError(camera.mount, scenario.seed, name));
     colour_cameras.emplace(name, ColourCamera(camera, scenario.seed, name, renderer));
     depth_cameras.emplace(name, DepthCamera::make(camera, scenario.seed, name, ray_caster, renderer.surfaces()));
   }
@@ -138,6 +158,7 @@ void SimulatedStream::State::describe() {
     }
   }
   for (const auto& [name, laser] : scenario.sensors.lasers) info.lasers[name] = {laser.mount.X_BL(), laser.rate_hz};
+  info.own_body_B = own_body(ray_caster->scene());
   info.has_odometry = scenario.sensors.odometry.enabled;
   info.X_WB_start = motion.X_WB(0);
   const std::vector<Stamp> frames = camera_stamps(sources);
@@ -149,12 +170,32 @@ void SimulatedStream::State::describe() {
   }
 }
 
+double SimulatedStream::State::speed(const MountError& mount, Stamp stamp) const {
+  if (!mount.shakes() || stamp <= 0) return 0.0;
+  constexpr Stamp kStep = 10'000'000;
+  const Stamp before = std::max<Stamp>(0, stamp - kStep);
+  const Pose X_AB = motion.X_WB(before).inverse() * motion.X_WB(stamp);
+  // A vehicle that turns in place rolls, too: its wheels are about this far from the middle.
+  const double wheels = 0.4 * scenario.robot.width_m, turned = Eigen::AngleAxisd(X_AB.linear()).angle();
+  return (X_AB.translation().norm() + wheels * std::abs(turned)) / to_seconds(stamp - before);
+}
+
+Pose SimulatedStream::State::X_WC(const std::string& camera, Stamp stamp) const {
+  const MountError& mount = mounts.at(camera);
+  return motion.X_WB(stamp) * mount.X_BC(stamp, speed(mount, stamp));
+}
+
+Pose SimulatedStream::State::X_WL(const std::string& laser, Stamp stamp) const {
+  const MountError& mount = mounts.at(laser);
+  return motion.X_WB(stamp) * mount.X_BL(stamp, speed(mount, stamp));
+}
+
 LaserScan SimulatedStream::State::scan(const std::string& name, Stamp stamp) {
   const LaserConfig& laser = scenario.sensors.lasers.at(name);
   const Stamp end = stamp + static_cast<Stamp>(laser.beams - 1) * laser.beam_interval();
   motion.advance_to(end);
   motion.moment(stamp, end).show(*ray_caster);
-  LaserScan scan = spot_scan(*ray_caster, renderer.surfaces(), laser, name, stamp, [this](Stamp at) { return motion.X_WB(at); });
+  LaserScan scan = spot_scan(*ray_caster, renderer.surfaces(), laser, name, stamp, [&](Stamp at) { return X_WL(name, at); });
   laser_noise.at(name).apply(scan);
   return scan;
 }
@@ -163,8 +204,9 @@ void SimulatedStream::State::render(RgbdFrame& frame, const HallMoment& moment) 
   const auto begin = std::chrono::steady_clock::now();
   moment.show(*ray_caster);
   const auto at = [&](Stamp stamp) { return X_WC(frame.sensor, stamp); };
-  FrameImages images = colour_cameras.at(frame.sensor).look(frame.stamp, at, config.colour);
-  frame.colour = config.colour ? images.colour : cv::Mat(images.depth.size(), CV_8UC3, cv::Scalar::all(0));
+  const bool ideal = config.ideal_depth || config.truth_depth || scenario.sensors.cameras.at(frame.sensor).depth_model == "gaussian";
+  FrameImages images = colour_cameras.at(frame.sensor).look(frame.stamp, at, config.colour, false, ideal);
+  frame.colour = config.colour ? images.colour : cv::Mat(images.instances.size(), CV_8UC3, cv::Scalar::all(0));
   if (config.truth_depth) {
     frame.depth = depth_from_millimetres(depth_to_millimetres(images.depth));
   } else {
@@ -225,6 +267,14 @@ std::optional<SensorEvent> SimulatedStream::next() {
 }
 
 Pose SimulatedStream::true_X_WB(Stamp stamp) const { return state_->motion.X_WB(stamp); }
+Pose SimulatedStream::true_X_WC(const std::string& camera, Stamp stamp) const {
+  if (state_->scenario.sensors.cameras.count(camera) == 0) throw Error("no camera '" + camera + "'");
+  return state_->X_WC(camera, stamp);
+}
+Pose SimulatedStream::true_X_WL(const std::string& laser, Stamp stamp) const {
+  if (state_->scenario.sensors.lasers.count(laser) == 0) throw Error("no laser '" + laser + "'");
+  return state_->X_WL(laser, stamp);
+}
 MotionReport SimulatedStream::motion() const { return state_->motion.report(); }
 const FrameTruth& SimulatedStream::last_frame_truth() const { return state_->truth; }
 std::vector<ObjectView> SimulatedStream::object_views() {

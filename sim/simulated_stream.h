@@ -23,6 +23,7 @@ struct SimulationConfig {
   RenderOptions render;
   bool colour = true;        // false: colour pictures stay black and cost nothing
   bool truth_depth = false;  // depth without error and field mask, in whole millimetres
+  bool ideal_depth = true;   // no key: false leaves FrameTruth::ideal_depth empty where no depth camera needs it, and saves its rays
   int max_frames = 0;        // the stream ends after this many camera frames; 0 = the whole route
   std::string isa = "avx2";  // instruction set of the ray caster; see RayCasterOptions
   void visit(Fields& f);
@@ -56,6 +57,10 @@ class SimulatedStream final : public SensorStream {
 
   // The vehicle at any time up to the newest event, exact; before the start it stands.
   Pose true_X_WB(Stamp stamp) const;
+  // A sensor as it really sat on the vehicle: the mount with its bracket's error and its vibration (Mount). X_WC of a camera, X_WL of a
+  // laser (of a scan's first beam, say). Throws Error for an unknown name.
+  Pose true_X_WC(const std::string& camera, Stamp stamp) const;
+  Pose true_X_WL(const std::string& laser, Stamp stamp) const;
   // What has moved and what the vehicle has touched so far.
   MotionReport motion() const;
   // Poses of the newest frame and, once it is loaded, its images; a frame that was not loaded has empty images.

@@ -16,12 +16,11 @@ constexpr float kFlat = 0.03f;  // what is lower is the floor, or painted on it
 double floor_of(double lowest) { return lowest < 0.0 && lowest > -1.0 ? 0.0 : lowest; }
 
 HallHeights::HallHeights(const Scene& scene, double cell_m, double below_m) : cell_(cell_m) {
-  std::set<int> moving;
-  for (const Mover& mover : scene.movers) moving.insert(mover.instances.begin(), mover.instances.end());
+  const std::vector<bool> moving = scene.moves();
   Eigen::AlignedBox3f bounds;
   std::vector<std::vector<Eigen::Vector3f>> corners(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    if (moving.contains(static_cast<int>(i))) continue;
+    if (moving[i]) continue;
     const Instance& instance = scene.instances[i];
     for (const Eigen::Vector3f& p : scene.meshes[static_cast<std::size_t>(instance.mesh)].positions) {
       corners[i].push_back(instance.X_WM * p);

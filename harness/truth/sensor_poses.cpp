@@ -10,17 +10,15 @@ SensorPoses::SensorPoses(const SimulatedStream& stream, const SensorsConfig& sen
 
 void SensorPoses::add(const SensorEvent& event) {
   const Stamp stamp = stamp_of(event);
-  const Pose X_WB = stream_.true_X_WB(stamp);
-  const StreamInfo& info = stream_.info();
   if (const auto* frame = std::get_if<RgbdFrame>(&event)) {
-    const Pose X_WC = X_WB * info.cameras.at(frame->sensor).X_BC;
+    const Pose X_WC = stream_.true_X_WC(frame->sensor, stamp);
     poses_["cameras/" + frame->sensor + ".tum"].push_back({stamp, X_WC});
     const auto depth = X_CD_.find(frame->sensor);
     if (depth != X_CD_.end()) poses_["cameras/" + frame->sensor + ".depth.tum"].push_back({stamp, X_WC * depth->second});
   } else if (const auto* scan = std::get_if<LaserScan>(&event)) {
-    poses_["lasers/" + scan->sensor + ".tum"].push_back({stamp, X_WB * info.lasers.at(scan->sensor).X_BL});
+    poses_["lasers/" + scan->sensor + ".tum"].push_back({stamp, stream_.true_X_WL(scan->sensor, stamp)});
   } else {
-    poses_[std::get<OdometryReading>(event).sensor + ".tum"].push_back({stamp, X_WB});
+    poses_[std::get<OdometryReading>(event).sensor + ".tum"].push_back({stamp, stream_.true_X_WB(stamp)});
   }
 }
 

@@ -26,6 +26,7 @@ class LaserIcpLocaliser : public Localiser {
   std::optional<Pose> pose_at(const RgbdFrame& frame) override;
   // At the stamp of the newest scan, which is its first beam's; nothing before the first scan.
   std::optional<Pose> current_pose() const override;
+  bool localised() const override { return counts_.scans <= 1 || last_match_.believable; }
 
   // What became of the scans, for reports.
   struct Counts {

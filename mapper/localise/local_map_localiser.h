@@ -38,6 +38,7 @@ class LocalMapLocaliser : public Localiser {
   std::optional<Pose> pose_at(const RgbdFrame& frame) override;
   // At the stamp of the newest scan, which is its first beam's; nothing before the first scan.
   std::optional<Pose> current_pose() const override;
+  bool localised() const override { return lost_ == 0; }
   std::optional<Eigen::Matrix3d> covariance() const override;
 
   // What became of the scans, for reports.

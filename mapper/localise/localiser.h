@@ -17,6 +17,8 @@ class Localiser {
   virtual std::optional<Pose> pose_at(const RgbdFrame& frame) = 0;
   // X_WB after the newest scan (or odometry reading, where there are no scans); what trajectory.tum is made of.
   virtual std::optional<Pose> current_pose() const = 0;
+  // Whether what that pose rests on is the newest scan, not odometry alone. True where there is nothing to match.
+  virtual bool localised() const { return true; }
   // Covariance of (x, y, yaw) of that pose in W, metres and radians; nothing where the localiser does not know.
   virtual std::optional<Eigen::Matrix3d> covariance() const { return std::nullopt; }
 };

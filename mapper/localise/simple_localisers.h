@@ -20,6 +20,7 @@ class OdometryLocaliser : public Localiser {
   void add(const LaserScan&) override {}
   std::optional<Pose> pose_at(const RgbdFrame& frame) override;
   std::optional<Pose> current_pose() const override;  // at the newest reading
+  bool localised() const override { return false; }
 
  private:
   Pose X_WB(const PlanarMotion& X_OB) const;

@@ -212,6 +212,9 @@ void RecordingCalibration::visit(Fields& f) {
   if (has_laser) f.group("laser", laser, "the laser", {.required = true});
   visit_pose(f, "X_WB_start", X_WB_start, "pose of the vehicle at the first event, 3 x 4, row by row");
   f("up", up, "direction that points up in the recording's world", {.length = 3});
+  f("own_body", own_body, "box of the vehicle's own body in its frame: least x, y, z, most x, y, z; empty: its sensors see nothing of it");
+  const bool box = own_body.size() == 6 && own_body[0] < own_body[3] && own_body[1] < own_body[4] && own_body[2] < own_body[5];
+  if (!own_body.empty() && !box) f.reject("own_body", "is no box; expected nothing, or least x, y, z and then most x, y, z");
   if (!has_direction(up)) f.reject("up", "is not a direction; expected three numbers that are not all 0");
 }
 
@@ -265,6 +268,8 @@ std::unique_ptr<Recording> open_recording(const fs::path& folder, const Recordin
   if (contents) add_frames(*contents, config, calibration, info, events);
   if (calibration) {
     info.X_WB_start = pose_from_numbers(calibration->X_WB_start);
+    const std::vector<double>& box = calibration->own_body;
+    if (!box.empty()) info.own_body_B.emplace(Eigen::Vector3d(box[0], box[1], box[2]), Eigen::Vector3d(box[3], box[4], box[5]));
     info.up_W = up_from(calibration->up);
   }
   if (!config.up.empty()) {

@@ -70,6 +70,7 @@ struct RecordingCalibration {
   Laser laser;
   std::vector<double> X_WB_start = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   std::vector<double> up = {0, 0, 1};
+  std::vector<double> own_body;  // StreamInfo::own_body_B: least x, y, z, most x, y, z in metres; empty: none
   void visit(Fields& f);
 };
 

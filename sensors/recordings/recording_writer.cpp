@@ -57,6 +57,10 @@ RecordingCalibration calibration_of(const StreamInfo& info) {
     calibration.laser = {name, laser.rate_hz, pose_numbers(laser.X_BL)};
   }
   calibration.X_WB_start = pose_numbers(info.X_WB_start);
+  if (info.own_body_B) {
+    const Eigen::Vector3d &low = info.own_body_B->min(), &high = info.own_body_B->max();
+    calibration.own_body = {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+  }
   calibration.up = {info.up_W.x(), info.up_W.y(), info.up_W.z()};
   return calibration;
 }

@@ -30,15 +30,16 @@ void HallMoment::show(RayCaster& ray_caster) const {
   const Scene& scene = ray_caster.scene();
   WARETWIN_CHECK(movers.size() == scene.movers.size(), "a moment of this hall");
   ray_caster.set_shutter(begin, end);
+  const auto put = [&](int index, const Place& place) {
+    ray_caster.set_present(index, place.present);
+    if (!place.present) return;
+    const Eigen::Affine3f& X_GM = scene.instances[static_cast<std::size_t>(index)].X_WM;
+    ray_caster.set_motion(index, place.X_WG_begin * X_GM, place.X_WG_end * X_GM);
+  };
   for (std::size_t i = 0; i < movers.size(); ++i) {
-    const Place& place = movers[i];
-    for (const int index : scene.movers[i].instances) {
-      ray_caster.set_present(index, place.present);
-      if (!place.present) continue;
-      const Eigen::Affine3f& X_GM = scene.instances[static_cast<std::size_t>(index)].X_WM;
-      ray_caster.set_motion(index, place.X_WG_begin * X_GM, place.X_WG_end * X_GM);
-    }
+    for (const int index : scene.movers[i].instances) put(index, movers[i]);
   }
+  for (const int index : scene.vehicle) put(index, vehicle);
   ray_caster.commit();
 }
 
@@ -149,10 +150,7 @@ HallMotion::State::State(const Scenario& a_scenario, RayCaster& ray_caster)
 // Triangles that the vehicle or an item can reach. The true objects that run as belts are apart: items meet their surfaces instead.
 void HallMotion::State::add_hall(const RayCaster& ray_caster) {
   const Scene& scene = ray_caster.scene();
-  std::vector<bool> moves(scene.instances.size(), false);
-  for (const Mover& mover : scene.movers) {
-    for (const int index : mover.instances) moves[static_cast<std::size_t>(index)] = true;
-  }
+  const std::vector<bool> moves = scene.moves();
   std::vector<std::vector<Eigen::Vector3d>> hall, conveyors;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (moves[i]) continue;
@@ -318,7 +316,9 @@ Pose HallMotion::wheels_X_WB(Stamp stamp) const {
 
 HallMoment HallMotion::moment(Stamp begin, Stamp end) const {
   const State& s = *state_;
-  HallMoment moment{.begin = begin, .end = end, .movers = {}};
+  HallMoment moment{.begin = begin, .end = end, .movers = {}, .vehicle = {}};
+  const auto placed = [this](Stamp stamp) { return Eigen::Affine3d(X_WB(stamp).matrix()).cast<float>(); };
+  moment.vehicle = {true, placed(begin), placed(end)};
   if (s.mover_count == 0) return moment;
   double begin_share = 0.0, end_share = 0.0;
   const auto [b0, b1] = s.around(begin, begin_share);

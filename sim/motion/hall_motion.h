@@ -21,6 +21,7 @@ struct HallMoment {
   };
   Stamp begin = 0, end = 0;
   std::vector<Place> movers;  // as many as Scene::movers
+  Place vehicle;              // Scene::vehicle, in its frame B
 
   // Opens the caster's shutter for this stretch and puts the movers there. Costs next to nothing where nothing has changed.
   void show(RayCaster& ray_caster) const;

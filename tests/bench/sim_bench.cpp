@@ -78,7 +78,7 @@ void views_of_objects(benchmark::State& state) {
 void laser_scan(benchmark::State& state) {
   const LaserConfig laser;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(ideal_scan(*hall(), laser, "laser", 0, [](Stamp) { return make_upright_pose(0, 0, 0, 0); }).ranges.data());
+    benchmark::DoNotOptimize(ideal_scan(*hall(), laser, "laser", 0, [&](Stamp) { return laser.mount.X_BL(); }).ranges.data());
   }
 }
 
@@ -88,7 +88,7 @@ void laser_scan_with_spot(benchmark::State& state) {
   const Surfaces surfaces(hall());
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        spot_scan(*hall(), surfaces, laser, "laser", 0, [](Stamp) { return make_upright_pose(0, 0, 0, 0); }).ranges.data());
+        spot_scan(*hall(), surfaces, laser, "laser", 0, [&](Stamp) { return laser.mount.X_BL(); }).ranges.data());
   }
 }
 

@@ -138,6 +138,24 @@ TEST(Mapper, KeepsTheMappingRateAndCountsWhatItDrops) {
   EXPECT_EQ(loaded, 4) << "dropped frames must not be loaded";
 }
 
+TEST(Mapper, EachCameraHasTheMappingRateForItself) {
+  Log log;
+  StreamInfo info = one_camera();
+  info.cameras["rear"] = info.cameras.at("camera");
+  MapperConfig config;
+  config.rate_hz = 1.0;
+  Mapper mapper(config, logging_stages(log), info);
+  mapper.consume(odometry_at(0, 0));
+  for (int i = 0; i < 20; ++i) {
+    RgbdFrame front = frame_at(i * 100'000'000), rear = frame_at(i * 100'000'000);
+    rear.sensor = "rear";
+    mapper.consume(std::move(front));
+    mapper.consume(std::move(rear));
+  }
+  EXPECT_EQ(mapper.map().frames.size(), 4u);
+  EXPECT_EQ(mapper.map().frames_dropped_by_rate, 36);
+}
+
 TEST(Mapper, MapsEveryFrameAtRateZero) {
   Log log;
   MapperConfig config = MapperConfig::make("best");

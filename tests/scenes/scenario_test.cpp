@@ -126,6 +126,8 @@ TEST_F(ScenarioTest, ErrorsNameFileLineAndKey) {
   EXPECT_ERROR(load_scenario(write(kYaml, "lasers: {laser: {}}", "lasers: {}")), "sensors", "camera");
   EXPECT_ERROR(load_scenario(write("models: []\nrobot: {route: [{x_m: 0, y_m: 0}]}\n")), "scenario.yaml", "models");
   EXPECT_ERROR(load_scenario(write(kYaml), {{"models.0.file", "bax.glb"}}), "models.0.file", "bax.glb");
+  EXPECT_ERROR(load_scenario(write(kYaml), {{"robot.model", "cart.stl"}}), "robot.model", ".gltf or .glb");
+  EXPECT_ERROR(load_scenario(write(kYaml), {{"robot.model", "../cart.glb"}}), "robot.model", "inside the scenario's folder");
   EXPECT_ERROR(build_scene(load_scenario(write(kYaml, "conv*", "crane*"))), "truth.0.pattern", "crane*", "matches no node");
   EXPECT_ERROR(load_scenario(folder.path() / "none.yaml"), "none.yaml", "no such file");
 }

@@ -33,6 +33,7 @@ StreamInfo odd_stream() {
       DepthCameraView{Lens(Intrinsics::checked(24, 20, 490.1, 490.3, 11.5, 9.5), CameraConfig().time_of_flight.lens), X_CD}};
   info.lasers["low"] = {make_upright_pose(0.275, 0.2, 0.3, 0.766), 25.0};
   info.has_odometry = true;
+  info.own_body_B.emplace(Eigen::Vector3d(-0.45, -1.0 / 3, 0), Eigen::Vector3d(0.45, 1.0 / 3, 1.42));
   info.X_WB_start = make_upright_pose(1.0 / 3, 2.0 / 7, 0, 1.1);
   return info;
 }
@@ -102,6 +103,9 @@ TEST(RecordingWriter, WhatIsWrittenReadsBackToTheSameBits) {
   EXPECT_EQ(read.lasers.at("low").X_BL.matrix(), info.lasers.at("low").X_BL.matrix());
   EXPECT_EQ(read.X_WB_start.matrix(), info.X_WB_start.matrix());
   EXPECT_EQ(read.up_W, info.up_W);
+  ASSERT_TRUE(read.own_body_B);
+  EXPECT_EQ(read.own_body_B->min(), info.own_body_B->min());
+  EXPECT_EQ(read.own_body_B->max(), info.own_body_B->max());
   EXPECT_TRUE(read.has_odometry);
   EXPECT_FALSE(read.has_recorded_poses);
   EXPECT_EQ(read.frame_count, 5);

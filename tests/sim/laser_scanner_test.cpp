@@ -30,7 +30,7 @@ TEST(IdealScan, RectangularRoomFromAMovingRobot) {
   const auto yaw = [](double t) { return 0.2 + 2.0 * t; };
   const auto X_WB = [&](Stamp stamp) { return make_upright_pose(x(to_seconds(stamp)), 0.3, 0, yaw(to_seconds(stamp))); };
   const Stamp start = from_seconds(1.0);
-  const LaserScan scan = ideal_scan(caster, config, "laser", start, X_WB);
+  const LaserScan scan = ideal_scan(caster, config, "laser", start, [&](Stamp at) { return X_WB(at) * config.mount.X_BL(); });
   ASSERT_EQ(scan.ranges.size(), 541u);
   EXPECT_EQ(scan.stamp, start);
   // 270 deg of a 40 ms turn.
@@ -51,7 +51,7 @@ TEST(IdealScan, LimitsOfTheScanner) {
   config.mount = {.z_m = 0.3};
   config.range_min_m = 2.5;
   config.range_max_m = 4.0;
-  const LaserScan scan = ideal_scan(caster, config, "laser", 0, [](Stamp) { return make_upright_pose(0, 0, 0, 0); });
+  const LaserScan scan = ideal_scan(caster, config, "laser", 0, [&](Stamp) { return config.mount.X_BL(); });
   int seen = 0;
   for (int i = 0; i < 541; ++i) {
     const double expected = wall_distance(0, 0, to_radians(-135 + 0.5 * i));

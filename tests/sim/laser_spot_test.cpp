@@ -21,8 +21,10 @@ struct Hall {
   std::shared_ptr<const RayCaster> caster;
   Surfaces surfaces;
   explicit Hall(Scene scene) : caster(fixtures::caster_of(std::move(scene))), surfaces(caster) {}
-  LaserScan scan(const LaserConfig& config) const { return spot_scan(*caster, surfaces, config, "laser", 0, at_origin); }
-  static Pose at_origin(Stamp) { return make_upright_pose(0, 0, 0, 0); }
+  // On a vehicle at the origin.
+  LaserScan scan(const LaserConfig& config) const {
+    return spot_scan(*caster, surfaces, config, "laser", 0, [&](Stamp) { return config.mount.X_BL(); });
+  }
 };
 
 LaserConfig forward() {
@@ -42,7 +44,8 @@ TEST(SpotScan, WithoutWidthIsTheIdealScan) {
   const Hall hall(fixtures::room(-3, 5, -2, 4, 3));
   LaserConfig config = forward();
   config.spot.mixed = config.spot.dropouts = false;
-  const LaserScan spot = hall.scan(config), ideal = ideal_scan(*hall.caster, config, "laser", 0, Hall::at_origin);
+  const LaserScan spot = hall.scan(config),
+                  ideal = ideal_scan(*hall.caster, config, "laser", 0, [&](Stamp) { return config.mount.X_BL(); });
   for (std::size_t i = 0; i < 541; ++i) ASSERT_NEAR(spot.ranges[i], ideal.ranges[i], 2e-6f * ideal.ranges[i]) << i;
 }
 

@@ -172,6 +172,77 @@ TEST(SimulatedStream, TruthDepthAndNoColour) {
   }
 }
 
+// The hall of the other tests with a low box for a vehicle, as long as it and 0.3 m high.
+std::shared_ptr<const Scene> hall_with_vehicle() {
+  Scene scene = *hall();
+  const int box = fixtures::add_mesh(scene, fixtures::unit_box(), fixtures::add_material(scene, {0.5f, 0.5f, 0.5f}));
+  scene.vehicle = {fixtures::add_instance(scene, box, fixtures::placed({-0.45f, -0.3f, 0.0f}, {0.9f, 0.6f, 0.25f}))};
+  return std::make_shared<const Scene>(scene);
+}
+
+TEST(SimulatedStream, TheVehicleStandsInItsSensorsView) {
+  Scenario scenario = drive();
+  scenario.sensors.cameras.at("camera").mount.pitch_deg = 60;
+  scenario.sensors.lasers.at("laser").mount.z_m = 0.2;  // in the middle of the box
+  SimulationConfig config;
+  config.colour = false;
+  config.truth_depth = true;
+  config.max_frames = 8;
+  SimulatedStream with(scenario, hall_with_vehicle(), config), without(scenario, hall(), config);
+  EXPECT_FALSE(without.info().own_body_B);
+  ASSERT_TRUE(with.info().own_body_B);
+  EXPECT_NEAR(with.info().own_body_B->max().z(), 0.28, 1e-6);
+  std::vector<SensorEvent> events = all_events(with);
+  RgbdFrame last = std::get<RgbdFrame>(events.back());  // on the move
+  load_pictures(last);
+  const FrameTruth truth = with.last_frame_truth();
+  const StreamInfo::Camera& camera = with.info().cameras.at("camera");
+  int on_vehicle = 0;
+  for (int v = 0; v < last.depth.rows; ++v) {
+    for (int u = 0; u < last.depth.cols; ++u) {
+      const Eigen::Vector3d ray_B = camera.X_BC.linear() * camera.intrinsics.ray(u, v);
+      // Where the pixel's ray meets the box's upper side, at 0.25 m.
+      const double z = (0.25 - camera.X_BC.translation().z()) / ray_B.z();
+      const Eigen::Vector3d p_B = camera.X_BC.translation() + z * ray_B;
+      if (z <= 0 || std::abs(p_B.x()) > 0.44 || std::abs(p_B.y()) > 0.29) continue;
+      EXPECT_NEAR(last.depth.at<float>(v, u), z, 0.002) << u << ", " << v;
+      ++on_vehicle;
+    }
+  }
+  EXPECT_GT(on_vehicle, 100);
+  for (const SensorEvent& event : events) {
+    const auto* scan = std::get_if<LaserScan>(&event);
+    if (scan == nullptr) continue;
+    for (const float range : scan->ranges) EXPECT_LT(range, 1.3f);  // it looks out of the inside of a box
+  }
+}
+
+TEST(SimulatedStream, MountsErrAndOnlyTheTruthKnows) {
+  Scenario scenario = drive();
+  Mount& mount = scenario.sensors.cameras.at("camera").mount;
+  mount.bracket.angle_sigma_deg = 1.0;
+  scenario.sensors.lasers.at("laser").mount.vibration = {.angle_rms_deg = 0.5};
+  SimulationConfig config;
+  config.colour = false;
+  config.max_frames = 12;
+  SimulatedStream stream(scenario, hall(), config);
+  EXPECT_EQ(stream.info().cameras.at("camera").X_BC.matrix(), mount.X_BC().matrix());
+  EXPECT_EQ(stream.true_X_WL("laser", 0).matrix(), (stream.true_X_WB(0) * stream.info().lasers.at("laser").X_BL).matrix());  // it stands
+  Stamp last = 0;
+  double most = 0.0;
+  while (auto event = stream.next()) {
+    last = stamp_of(*event);
+    const Pose X = (stream.true_X_WB(last) * stream.info().lasers.at("laser").X_BL).inverse() * stream.true_X_WL("laser", last);
+    most = std::max(most, std::abs(Eigen::AngleAxisd(X.linear()).angle()));
+  }
+  EXPECT_GT(most, to_radians(0.3));  // it shakes on the way
+  EXPECT_EQ(stream.last_frame_truth().X_WC.matrix(), stream.true_X_WC("camera", stream.last_frame_truth().stamp).matrix());
+  const Pose off = (stream.true_X_WB(last) * mount.X_BC()).inverse() * stream.true_X_WC("camera", last);
+  EXPECT_GT(std::abs(Eigen::AngleAxisd(off.linear()).angle()), to_radians(0.1));
+  EXPECT_THROW(stream.true_X_WC("none", 0), Error);
+  EXPECT_THROW(stream.true_X_WL("none", 0), Error);
+}
+
 TEST(SimulatedStream, EndsAfterTheFramesAskedFor) {
   SimulationConfig config;
   config.max_frames = 4;

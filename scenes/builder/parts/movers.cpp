@@ -124,7 +124,35 @@ int add_block(Kit& kit, int parent, const Placement& at) {
   });
 }
 
-std::vector<std::string> mover_names() { return {"carton", "tote", "person", "cart", "block"}; }
+int add_vehicle(Kit& kit, int parent, const Placement& at) {
+  const int node = kit.group("vehicle", parent, at);
+  kit.place("vehicle_base", node, {}, "vehicle_base", [&](MeshDraft& draft) {
+    draft.add(kit.material("black_paint"), standing_box(0.90, 0.60, 0.18, 0.02).move(0, 0, 0.06));
+    // The upper half leaves the laser's field free: 270 deg from the front left corner, 0.3 m high.
+    draft.add(kit.material("black_paint"), standing_box(0.57, 0.45, 0.11, 0.01).move(-0.165, -0.075, 0.24));
+    for (const double x : {-0.30, 0.30}) {
+      for (const double y : {-0.26, 0.26}) {
+        draft.add(kit.material("rubber"), cylinder({x, y - 0.025, 0.07}, {x, y + 0.025, 0.07}, 0.07, 16));
+      }
+    }
+  });
+  kit.place("vehicle_frame", node, {}, "vehicle_frame", [&](MeshDraft& draft) {
+    const auto post = [&](double x, double y, double from, double to) {
+      draft.add(kit.material("aluminium"), standing_box(0.04, 0.04, to - from, 0.003).move(x, y, from));
+    };
+    for (const double y : {-0.27, 0.27}) {
+      post(-0.42, y, 0.24, 0.95);
+      post(-0.06, y, 0.24, 1.42);
+    }
+    draft.add(kit.material("aluminium"), standing_box(0.04, 0.58, 0.04, 0.003).move(-0.06, 0, 1.38));
+    draft.add(kit.material("aluminium"), standing_box(0.40, 0.58, 0.05, 0.005).move(-0.24, 0, 0.92));
+    draft.add(kit.material("rubber"), standing_box(0.38, 0.40, 0.03, 0.004).move(-0.24, 0, 0.97));
+    draft.add(kit.material("dark_steel"), standing_box(0.025, 0.10, 0.04, 0.004).move(-0.026, 0, 1.38));
+  });
+  return node;
+}
+
+std::vector<std::string> mover_names() { return {"carton", "tote", "person", "cart", "block", "vehicle"}; }
 
 std::string build_mover(const std::string& name) {
   Kit kit;
@@ -138,8 +166,10 @@ std::string build_mover(const std::string& name) {
     add_cart(kit, -1, {});
   } else if (name == "block") {
     add_block(kit, -1, {});
+  } else if (name == "vehicle") {
+    add_vehicle(kit, -1, {});
   } else {
-    throw Error("model '" + name + "' is not known; expected carton, tote, person, cart or block");
+    throw Error("model '" + name + "' is not known; expected carton, tote, person, cart, block or vehicle");
   }
   return kit.model.to_glb(name);
 }

@@ -11,10 +11,13 @@ namespace waretwin::builder {
 int add_tote(Kit& kit, int parent, const Placement& at);    // 0.40 x 0.30 x 0.20 m, lidded
 int add_person(Kit& kit, int parent, const Placement& at);  // 1.76 m, in stride, with a reflective vest and a helmet
 int add_cart(Kit& kit, int parent, const Placement& at);    // a transport vehicle of 1.1 x 0.7 m with a load
+// The mapping vehicle itself, in its frame B: a low base of 0.9 x 0.6 m with room for the laser at its front left corner, a conveyor of its
+// own on an aluminium frame behind, and a crossbar at 1.4 m that carries the camera.
+int add_vehicle(Kit& kit, int parent, const Placement& at);
 int add_block(Kit& kit, int parent, const Placement& at);   // a workpiece as small as a fist
 
 std::vector<std::string> mover_names();
-// The model of this name as .glb: carton, tote, person, cart or block. Throws Error for another.
+// The model of this name as .glb: carton, tote, person, cart, block or vehicle. Throws Error for another.
 std::string build_mover(const std::string& name);
 
 }  // namespace waretwin::builder
