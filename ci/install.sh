@@ -3,6 +3,7 @@
 #   ci/install.sh             what the build and the tests need
 #   ci/install.sh --tools     also clang-format and clang-tidy
 #   ci/install.sh --peers     also what benchmarks are compared with (Open3D)
+#   ci/install.sh --cluster   also Slurm, for the test that runs a job array
 set -euo pipefail
 
 packages=(
@@ -18,7 +19,8 @@ for argument in "$@"; do
   case "$argument" in
     --tools) packages+=(clang-format clang-tidy) ;;
     --peers) packages+=(libopen3d-dev) ;;
-    *) echo "install.sh: unknown option '$argument'; expected --tools or --peers" >&2; exit 2 ;;
+    --cluster) packages+=(slurmctld slurmd slurm-client) ;;
+    *) echo "install.sh: unknown option '$argument'; expected --tools, --peers or --cluster" >&2; exit 2 ;;
   esac
 done
 

@@ -8,7 +8,7 @@ namespace waretwin {
 namespace {
 
 // Runs are deterministic, so a tolerance is no allowance for noise: it says what nobody would miss. Times depend on the machine.
-constexpr std::array<Measure, 22> kMeasures = {{
+constexpr std::array<Measure, 23> kMeasures = {{
     {"objects_seen", "/summary/truth", true, 0.0, "true objects that were seen enough to count"},
     {"recall", "/summary/recall", true, 0.0, "share of the counted true objects that are matched"},
     {"precision", "/summary/precision", true, 0.0, "share of the mapped objects that match a true one"},
@@ -21,6 +21,7 @@ constexpr std::array<Measure, 22> kMeasures = {{
     {"ate_max_m", "/trajectory/ate_max_m", false, 0.01, "trajectory error, largest, m"},
     {"rpe_trans_m", "/trajectory/rpe_trans_m", false, 0.002, "relative pose error, m"},
     {"rpe_rot_deg", "/trajectory/rpe_rot_deg", false, 0.05, "relative pose error, deg"},
+    {"unlocalised_share", "/trajectory/unlocalised_share", false, 0.005, "share of the way on odometry alone"},
     {"surface_mean_m", "/surface/mean_m", false, 0.001, "mean distance of the mesh from the hall, m"},
     {"surface_found", "/surface/found", true, 0.005, "share of the seen surface that the mesh has"},
     {"detection_ap50", "/detection/ap50", true, 0.01, "the detector's AP50 in the mapped frames"},

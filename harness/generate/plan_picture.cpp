@@ -49,7 +49,10 @@ PictureMesh picture_mesh(const Scene& scene) {
   std::vector<std::array<std::uint8_t, 3>> colours;
   for (const Material& material : scene.materials) colours.push_back(mean_colour(scene, material));
   PictureMesh picture;
-  for (const Instance& instance : scene.instances) {
+  const std::vector<bool> moves = scene.moves();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (moves[i]) continue;
+    const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     // What is cut out by alpha (tyre marks) would show as a solid strip.
     if (scene.materials[static_cast<std::size_t>(mesh.material)].alpha_mask) continue;
@@ -77,12 +80,15 @@ void draw_scale_bar(cv::Mat& image, double pixels_per_metre) {
 
 }  // namespace
 
-cv::Mat draw_plan(const Scene& scene, const RobotConfig& robot) {
+PictureView plan_view(const Scene& scene) {
   const Eigen::AlignedBox3f bounds = scene.bounds();
   const Eigen::Vector2d low = bounds.min().head<2>().cast<double>(), high = bounds.max().head<2>().cast<double>();
-  const double scale = kLongSide / std::max(1.0, (high - low).maxCoeff());
-  Picture picture(PictureView::from_above(low, high, scale, kMargin), kPaper);
-  picture.draw(picture_mesh(scene), static_cast<double>(kCeilingShare * bounds.max().z()));
+  return PictureView::from_above(low, high, kLongSide / std::max(1.0, (high - low).maxCoeff()), kMargin);
+}
+
+cv::Mat draw_plan(const Scene& scene, const RobotConfig& robot) {
+  Picture picture(plan_view(scene), kPaper);
+  picture.draw(picture_mesh(scene), static_cast<double>(kCeilingShare * scene.bounds().max().z()));
 
   const auto point = [](const Waypoint& w, double z) { return Eigen::Vector3d(w.x_m, w.y_m, z); };
   constexpr double kAbove = 0.02;
@@ -107,7 +113,7 @@ cv::Mat draw_plan(const Scene& scene, const RobotConfig& robot) {
   for (const TrueObject& object : scene.objects) {
     picture.draw_label(object.cuboid.centre + Eigen::Vector3d(0, 0, object.cuboid.size.z() / 2), std::to_string(object.id), kObject);
   }
-  draw_scale_bar(picture.image(), scale);
+  draw_scale_bar(picture.image(), picture.view().pixels_per_metre());
   return picture.image();
 }
 

@@ -49,7 +49,7 @@ int run(int argc, char** argv) {
       waretwin::add_run_command(program),      waretwin::add_map_command(program),     waretwin::add_record_command(program),
       waretwin::add_score_command(program),    waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
       waretwin::add_generate_command(program), waretwin::add_dataset_command(program), waretwin::add_train_command(program),
-      waretwin::add_detect_command(program),   waretwin::add_compare_command(program)};
+      waretwin::add_detect_command(program),   waretwin::add_compare_command(program), waretwin::add_study_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/digest.h"
 #include "core/error.h"
@@ -29,14 +30,29 @@ void score_trajectories(const ClosedLoopResult& result, RunScore& score) {
   score.trajectory_aligned = score_trajectory(pairs, TrajectoryAlignment::kSe3);
 }
 
+std::optional<double> unlocalised_share(const std::vector<TrajectoryPoint>& trajectory, const std::vector<StampedPose>& truth) {
+  // Beyond what a standing vehicle rocks.
+  constexpr double kMoved_m = 2e-4, kTurned_rad = 2e-4;
+  int moving = 0, lost = 0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Pose X = truth[i - 1].X_WB.inverse() * truth[i].X_WB;
+    if (X.translation().norm() < kMoved_m && std::abs(Eigen::AngleAxisd(X.linear()).angle()) < kTurned_rad) continue;
+    ++moving;
+    lost += trajectory[i].localised ? 0 : 1;
+  }
+  return moving > 0 ? std::optional(static_cast<double>(lost) / moving) : std::nullopt;
+}
+
 }  // namespace
 
 ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene, const std::function<void()>& ready,
                                  const std::function<void(double, const ObjectMap&)>& progress) {
-  SimulatedStream stream(config.scenario, scene, config.simulation);
+  SimulationConfig simulation = config.simulation;
+  simulation.ideal_depth = config.extras.depth || config.extras.pictures;
+  SimulatedStream stream(config.scenario, scene, simulation);
   const std::map<std::string, CameraConfig>& cameras = config.scenario.sensors.cameras;
   std::unique_ptr<SurfaceCoverage> coverage;
-  if (!cameras.empty() && !scene->objects.empty()) {
+  if (config.extras.visible_share && !cameras.empty() && !scene->objects.empty()) {
     coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), cameras, config.scenario.robot);
   }
 
@@ -55,9 +71,10 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     const FrameTruth& truth = stream.last_frame_truth();
     if (coverage) coverage->add_frame(frame.frame.sensor, truth.X_WC);
     const CameraConfig& camera = cameras.at(frame.frame.sensor);
-    surface.add_frame(camera, truth.X_WC);
-    depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
-                      camera.depth_max_m);
+    if (config.extras.surface) surface.add_frame(camera, truth.X_WC);
+    if (config.extras.depth)
+      depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
+                        camera.depth_max_m);
     if (!config.truth_frames.enabled && !detects) return;
     WARETWIN_CHECK(truth.stamp == frame.frame.stamp && truth.sensor == frame.frame.sensor, "the mapped frame is the stream's newest");
     views = stream.object_views();
@@ -65,6 +82,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     if (!config.truth_frames.enabled) return;
     result.truth_frames += truth_frame_line(truth, views, *scene, config.truth_frames.masks);
   };
+  hooks.pictures = config.extras.pictures;
   hooks.on_event = [&](const SensorEvent& event) { sensor_poses.add(event); };
   hooks.true_depth = [&](const RgbdFrame&) { return stream.last_frame_truth().ideal_depth; };
   if (config.truth_frames.enabled) {
@@ -93,8 +111,9 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.detection = detections.score();
   score.objects = compare_lists(result.mapped, result.truth, config.score);
   score_trajectories(result, score);
-  if (!map.frames.empty()) score.depth = depth_quality.result();
-  if (!map.frames.empty()) score.surface = surface.result(extract_mesh(*map.volume));
+  score.unlocalised_share = unlocalised_share(map.trajectory, result.true_trajectory);
+  if (config.extras.depth && !map.frames.empty()) score.depth = depth_quality.result();
+  if (config.extras.surface && !map.frames.empty()) score.surface = surface.result(extract_mesh(*map.volume));
   score.motion = stream.motion();
   score.timing_ms = summarise_stages(result.mapping.frames);
   score.frames_simulated = map.frames_seen;

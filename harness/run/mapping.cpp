@@ -76,7 +76,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     source_times.push_back(source_ms);
     const int index = static_cast<int>(source_times.size()) - 1;
     if (hooks.on_frame) hooks.on_frame(frame);
-    if (album.wants(index)) {
+    if (hooks.pictures && album.wants(index)) {
       const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
       const double far_m = std::min(camera.depth_max_m, 10.0);
       std::vector<FramePicture> pictures = {{".colour", draw_frame(frame, mapper.map().objects, camera.intrinsics)},

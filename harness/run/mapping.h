@@ -43,6 +43,7 @@ struct MappingHooks {
   std::function<cv::Mat(const RgbdFrame&)> true_depth;
   // Picture of the truth about the frame that was mapped last (BGR). May be empty.
   std::function<cv::Mat(const RgbdFrame&)> truth_picture;
+  bool pictures = true;  // false: none are kept
 };
 
 // The map.waretwin to go on from, where one is named. Throws Error naming the file where it is none or its voxels are not the

@@ -25,6 +25,24 @@ MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::
   return config;
 }
 
+std::optional<std::string> detector_beside(const std::optional<std::string>& named, const std::filesystem::path& folder) {
+  if (!named || *named == "truth" || *named == "none" || *named == "yolo" || is_shipped_model(*named)) return named;
+  const std::filesystem::path file = folder / *named;
+  return std::filesystem::exists(file) ? file.string() : *named;
+}
+
+void RunChoice::visit(Fields& f) {
+  f("profile", profile, "of the mapper", {.choices = {"best", "paper"}});
+  std::string named = detector.value_or("");
+  f("detector", named, "as for run --detector; empty: the shipped model");
+  detector = named.empty() ? std::nullopt : std::optional(named);
+  f("poses", poses, "laser, odometry or truth; empty: as the profile has it", {.choices = {"", "laser", "odometry", "truth"}});
+  f("depth", depth, "sensor or truth", {.choices = {"sensor", "truth"}});
+  f("association", association, "map or truth", {.choices = {"map", "truth"}});
+  f("rate_hz", rate_hz, "frames mapped a second; 0: every frame; null: as the profile has it", {.min = 0, .max = 1000});
+  f("frames", frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+}
+
 RunConfig chosen_run(const RunChoice& choice) {
   RunConfig config;
   const std::string usual = config.mapper.detector;

@@ -14,6 +14,9 @@ namespace waretwin {
 // name); truth, and nothing, are left to the caller. Throws Error for what is none of these.
 MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::string>& detector, std::optional<double> rate_hz);
 
+// The same named in a file: a detector that is a file stands in `folder`; words and shipped models are what they are.
+std::optional<std::string> detector_beside(const std::optional<std::string>& named, const std::filesystem::path& folder);
+
 struct RunChoice {
   std::string profile = "best";
   std::optional<std::string> detector;  // also truth; nothing: the shipped model
@@ -21,7 +24,9 @@ struct RunChoice {
   std::string depth = "sensor", association = "map";
   std::optional<double> rate_hz;  // nothing: as the profile has it
   int frames = 0;                 // 0: all
-  std::string resume;             // a map.waretwin
+  std::string resume;             // a map.waretwin; no key: nothing that a file says over and over
+
+  void visit(Fields& f);
 };
 
 // All but the scenario.

@@ -18,6 +18,13 @@ void TruthStages::visit(Fields& f) {
   f("association", association, "true identities in place of association");
 }
 
+void RunExtras::visit(Fields& f) {
+  f("pictures", pictures, "keeps pictures of frames");
+  f("depth", depth, "measures the depth's error");
+  f("surface", surface, "measures the mesh against the hall");
+  f("visible_share", visible_share, "measures how much of each true object the frames saw; without it all are taken for seen");
+}
+
 void RunConfig::visit(Fields& f) {
   scenario.visit(f);
   f.group("mapper", mapper, "the mapper");
@@ -27,6 +34,7 @@ void RunConfig::visit(Fields& f) {
   f.group("truth_frames", truth_frames, "the truth of mapped frames");
   f.group("detection_score", detection_score, "how detections are compared with what the mapped frames show");
   f.group("score", score, "how map and truth are compared");
+  f.group("extras", extras, "what is measured beside the map");
   f.group("output", output, "files that are written where they can be");
   f("resume", resume, "the map.waretwin to go on from; empty: a new map");
 }

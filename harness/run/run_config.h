@@ -25,6 +25,15 @@ struct TruthStages {
   void visit(Fields& f);
 };
 
+// What a run measures beside the map, for its score and report. Each takes time that a run of many need not spend.
+struct RunExtras {
+  bool pictures = true;       // of frames
+  bool depth = true;          // RunScore::depth
+  bool surface = true;        // RunScore::surface
+  bool visible_share = true;  // of each true object; without it all are taken for seen
+  void visit(Fields& f);
+};
+
 struct RunConfig {
   RunConfig() { mapper.detector = "yolo"; }  // unless told otherwise no truth is in the loop
 
@@ -36,6 +45,7 @@ struct RunConfig {
   TruthFramesConfig truth_frames;
   DetectionLogConfig detection_score;
   ScoringRules score;
+  RunExtras extras;
   OutputConfig output;
   std::string resume;  // the map.waretwin to go on from; empty: a new map
 

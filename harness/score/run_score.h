@@ -41,6 +41,8 @@ struct RunScore {
   std::map<std::string, std::string> stages;  // who made what: detector, poses, depth, association
   ComparedLists objects;
   std::optional<TrajectoryScore> trajectory, trajectory_aligned;
+  // Of the poses that were asked for while the vehicle moved: share that rest on odometry alone. Nothing where it never moved.
+  std::optional<double> unlocalised_share;
   std::optional<DetectionScore> detection;         // the detector in the mapped frames
   std::optional<DepthQuality> depth;               // of the mapped frames
   std::optional<SurfaceScore> surface;             // the mesh against the hall

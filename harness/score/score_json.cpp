@@ -144,6 +144,7 @@ std::string score_json(const RunScore& score) {
   if (score.trajectory) {
     json["trajectory"] = trajectory_json(*score.trajectory);
     json["trajectory"]["ate_aligned_rmse_m"] = score.trajectory_aligned ? Json(score.trajectory_aligned->ate_rmse_m) : Json(nullptr);
+    json["trajectory"]["unlocalised_share"] = or_null(score.unlocalised_share);
     json["trajectory"]["ate_aligned_max_m"] = score.trajectory_aligned ? Json(score.trajectory_aligned->ate_max_m) : Json(nullptr);
   }
   json["timing_ms"] = Json::object();

@@ -1,7 +1,5 @@
 #include "harness/suite/suite.h"
 
-#include <unistd.h>
-
 #include <exception>
 #include <memory>
 #include <set>
@@ -10,13 +8,11 @@
 #include "core/files.h"
 #include "core/staged_folder.h"
 #include "harness/gate/comparison.h"
-#include "harness/generate/hall_maker.h"
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/score_json.h"
 #include "harness/suite/suite_text.h"
-#include "mapper/detect/model_files.h"
-#include "mapper/detect/shipped_models.h"
+#include "harness/units/run_unit.h"
 #include "mapper/stages.h"
 
 namespace waretwin {
@@ -36,14 +32,6 @@ struct ReadyRun {
 
 fs::path beside(const fs::path& suite_file, const std::string& name) { return suite_file.parent_path() / name; }
 
-// A detector that is a file stands beside the suite; words and shipped models are what they are.
-std::optional<std::string> detector_of(const SuiteRun& run, const fs::path& suite_file) {
-  const std::optional<std::string>& named = run.choice.detector;
-  if (!named || *named == "truth" || *named == "none" || *named == "yolo" || is_shipped_model(*named)) return named;
-  const fs::path file = beside(suite_file, *named);
-  return fs::exists(file) ? file.string() : *named;
-}
-
 std::string text_of(const PassMarks& pass, const Tolerances& tolerances) {
   PassMarks marks = pass;
   Tolerances allowed = tolerances;
@@ -53,53 +41,14 @@ std::string text_of(const PassMarks& pass, const Tolerances& tolerances) {
   });
 }
 
-// What the detector is made of; names of files say nothing of what is in them.
-void add_detector(const RunConfig& config, Digest& digest) {
-  if (config.truth_stages.detector) return;
-  if (config.mapper.detector == "yolo") {
-    const ModelFiles files = find_model_files(model_or_shipped(config.mapper.model), config.mapper.detect.names);
-    for (const fs::path& file : {files.cfg, files.weights, files.onnx, files.names}) {
-      if (!file.empty()) digest.add(read_file(file));
-    }
-  }
-  if (config.mapper.detector == "boxes") digest.add(read_file(config.mapper.boxes));
-}
-
 std::string unit_of(const ReadyRun& run, const SuiteConfig& suite, const std::string& baseline_bytes, const Scene& scene) {
-  RunConfig config = run.config;
-  // Their bytes count, not where they lie.
-  config.mapper.model.clear();
-  config.mapper.boxes.clear();
-  config.mapper.detect.names.clear();
-  config.resume.clear();
   Digest digest;
   digest.add(program_identity());
   digest.add(run.name);
-  digest.add(write_config([&](Fields& f) { config.visit(f); }));
   digest.add(text_of(run.pass, suite.tolerances));
   digest.add(baseline_bytes);
-  add_scene(scene, digest);
-  add_detector(run.config, digest);
-  if (!run.config.resume.empty()) digest.add(read_file(run.config.resume));
+  add_run(run.config, scene, digest);
   return digest.hex();
-}
-
-// A hall that is there already, of the same program and wishes, is taken as it is.
-fs::path drawn_hall(generate::GenerateConfig config, const fs::path& out, const std::function<void()>& check) {
-  Digest digest;
-  digest.add(program_identity());
-  digest.add(write_config([&](Fields& f) { config.visit(f); }));
-  const fs::path hall = out / "halls" / digest.hex();
-  if (fs::exists(hall)) return hall;
-  // Another shard may draw it, too: whoever is first has made it for both.
-  fs::path own = hall;
-  own += "-" + std::to_string(::getpid());
-  make_hall(config, own, {.step = check, .in_vain = {}});
-  std::error_code taken, ignored;
-  fs::rename(own, hall, taken);
-  if (taken) fs::remove_all(own, ignored);
-  if (!fs::exists(hall)) throw Error(hall, "cannot be put in place: " + taken.message());
-  return hall;
 }
 
 ReadyRun make_ready(const std::string& name, const SuiteRun& run, const SuiteConfig& suite, const SuiteRequest& request,
@@ -108,9 +57,9 @@ ReadyRun make_ready(const std::string& name, const SuiteRun& run, const SuiteCon
   ReadyRun ready;
   ready.name = name;
   ready.scenario = beside(file, run.scenario).string();
-  if (run.generate.asked_for()) ready.scenario = (drawn_hall(run.generate.config, request.out, check) / "scenario.yaml").string();
+  if (run.generate.asked_for()) ready.scenario = (draw_hall_once(run.generate.config, request.out, check) / "scenario.yaml").string();
   RunChoice choice = run.choice;
-  choice.detector = detector_of(run, file);
+  choice.detector = detector_beside(run.choice.detector, file.parent_path());
   std::vector<Setting> all;
   for (const std::string& text : run.set) all.push_back(parse_setting(text));
   all.insert(all.end(), request.settings.begin(), request.settings.end());
@@ -213,7 +162,7 @@ SuiteSummary run_suite(const SuiteRequest& request, const SuiteHooks& hooks) {
   SuiteSummary summary;
   summary.name = suite.name;
   const int count = static_cast<int>(runs.size());
-  SuiteProgress now{"", 0, (count - request.shard.index + request.shard.count - 1) / request.shard.count, 0.0};
+  SuiteProgress now{"", 0, request.shard.size(count), 0.0};
   for (int i = 0; i < count; ++i) {
     if (request.merge_only || !request.shard.has(i)) continue;
     const ReadyRun& run = runs[static_cast<std::size_t>(i)];

@@ -20,23 +20,10 @@ bool names_a_folder(const std::string& name) {
 
 }  // namespace
 
-bool DrawnHall::changed() const {
-  const auto text = [](generate::GenerateConfig hall) { return write_config([&](Fields& f) { hall.visit(f); }); };
-  return text(config) != text(DrawnHall().config);
-}
-
 void SuiteRun::visit(Fields& f) {
   f("scenario", scenario, "scenario file, from the suite's folder; or `generate`");
   f.group("generate", generate, "a hall drawn as `waretwin generate` does; `style` must be named");
-  f("profile", choice.profile, "of the mapper", {.choices = {"best", "paper"}});
-  std::string detector = choice.detector.value_or("");
-  f("detector", detector, "as for run --detector; empty: the shipped model");
-  choice.detector = detector.empty() ? std::nullopt : std::optional(detector);
-  f("poses", choice.poses, "laser, odometry or truth; empty: as the profile has it", {.choices = {"", "laser", "odometry", "truth"}});
-  f("depth", choice.depth, "sensor or truth", {.choices = {"sensor", "truth"}});
-  f("association", choice.association, "map or truth", {.choices = {"map", "truth"}});
-  f("rate_hz", choice.rate_hz, "frames mapped a second; 0: every frame; null: as the profile has it", {.min = 0, .max = 1000});
-  f("frames", choice.frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+  choice.visit(f);
   f("config", config, "an earlier run's config.yaml, or a part of one, from the suite's folder");
   f("set", set, "key=value, as for run --set");
   f("baseline", baseline, "score.json that the score must not be worse than, from the suite's folder");
@@ -51,9 +38,7 @@ void SuiteRun::visit(Fields& f) {
                       choice.association != usual.association || choice.rate_hz || choice.frames != 0;
   if (!config.empty() && chosen)
     f.reject("config", "settles profile, detector, poses, depth, association, rate_hz and frames; expected none of them beside it");
-  if (!generate.asked_for() && generate.changed()) f.reject("generate", "has no style; expected one");
-  if (scenario.empty() && !generate.asked_for()) f.reject("scenario", "missing; expected a scenario file, or generate with a style");
-  if (!scenario.empty() && generate.asked_for()) f.reject("scenario", "and generate are both named; expected one of them");
+  check_hall_source(f, scenario, generate);
 }
 
 void SuiteConfig::visit(Fields& f) {

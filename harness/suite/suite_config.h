@@ -21,19 +21,10 @@
 #include <vector>
 
 #include "harness/gate/measures.h"
+#include "harness/generate/drawn_hall.h"
 #include "harness/run/run_choice.h"
-#include "scenes/generate/generate_config.h"
 
 namespace waretwin {
-
-// A hall to be drawn, where `style` is named.
-struct DrawnHall {
-  DrawnHall() { config.style.clear(); }
-  generate::GenerateConfig config;
-  bool asked_for() const { return !config.style.empty(); }
-  bool changed() const;  // whether anything is named
-  void visit(Fields& f) { config.visit(f); }
-};
 
 struct SuiteRun {
   std::string scenario;  // as the file names it; empty: `generate`

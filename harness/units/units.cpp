@@ -32,18 +32,27 @@ void add(Digest& digest, const TextureUse& use) {
   add(digest, use.uv_transform);
 }
 
-// Name and size of each shared library, sorted: another version of one is nearly always another size.
-std::vector<std::string> libraries() {
-  std::vector<std::string> found;
+// Before main: what the program is linked with. What is loaded while it runs (TBB's plugins, say, which come with the second thread)
+// differs from run to run.
+const std::vector<std::filesystem::path> kLibraries = [] {
+  std::vector<std::filesystem::path> found;
   dl_iterate_phdr(
       [](dl_phdr_info* info, std::size_t, void* list) {
-        std::error_code none;
-        const std::filesystem::path file = info->dlpi_name;
-        const auto size = std::filesystem::file_size(file, none);
-        if (!none) static_cast<std::vector<std::string>*>(list)->push_back(file.filename().string() + " " + std::to_string(size));
+        static_cast<std::vector<std::filesystem::path>*>(list)->emplace_back(info->dlpi_name);
         return 0;
       },
       &found);
+  return found;
+}();
+
+// Name and size of each, sorted: another version of one is nearly always another size.
+std::vector<std::string> libraries() {
+  std::vector<std::string> found;
+  for (const std::filesystem::path& file : kLibraries) {
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file, none);
+    if (!none) found.push_back(file.filename().string() + " " + std::to_string(size));
+  }
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -132,6 +141,7 @@ void add_scene(const Scene& scene, Digest& digest) {
     digest.add(object.cuboid.yaw);
   }
   for (const Mover& mover : scene.movers) digest.add(mover.instances);
+  digest.add(scene.vehicle);
 }
 
 UnitStore::UnitStore(const std::filesystem::path& folder) : folder_(folder) { make_folder(folder); }

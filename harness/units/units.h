@@ -16,6 +16,7 @@ namespace waretwin {
 struct Shard {
   int index = 0, count = 1;
   bool has(int unit) const { return unit % count == index; }
+  int size(int units) const { return (units - index + count - 1) / count; }  // how many of so many it has
 };
 // "I/N", I from 0. Throws Error for anything else.
 Shard parse_shard(const std::string& text);

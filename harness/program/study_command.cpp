@@ -1,0 +1,104 @@
+// waretwin study: which mounting of the sensors maps best.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "core/error.h"
+#include "harness/program/common_options.h"
+#include "harness/program/interrupt.h"
+#include "harness/program/progress.h"
+#include "harness/study/preview.h"
+#include "harness/study/study.h"
+
+namespace waretwin {
+
+namespace {
+
+struct StudyOptions {
+  CommonOptions common;
+  std::string study, out, shard;
+  bool merge = false, preview = false, coverage = false;
+};
+
+int run(const StudyOptions& options) {
+  options.common.apply();
+  StudyRequest request;
+  request.file = options.study;
+  request.out = options.out;
+  request.settings = options.common.settings();
+  request.seed = options.common.seed;
+  if (!options.shard.empty()) request.shard = parse_shard(options.shard);
+  request.merge_only = options.merge;
+  request.coverage_only = options.coverage;
+  StudySummary summary;
+  {
+    const InterruptWatch watch;
+    Progress bar("study", options.common.quiet);
+    StudyHooks hooks;
+    hooks.check = [&] { watch.check("the same command goes on with what is not done"); };
+    hooks.progress = [&](const StudyProgress& now) {
+      bar.update(now.share, now.stage + " " + std::to_string(now.number) + " of " + std::to_string(now.of) + ", " + now.what);
+    };
+    if (options.preview) {
+      const int drawn = draw_previews(request, hooks);
+      bar.update(1.0, "");
+      std::printf("%d candidates drawn: %s/preview.png and preview/\n", drawn, options.out.c_str());
+      return 0;
+    }
+    summary = run_study(request, hooks);
+  }
+  if (summary.found > 0)
+    std::printf("%d runs were there already, of this program and configuration (%s/units)\n", summary.found, options.out.c_str());
+  if (!summary.results) {
+    if (options.merge)
+      throw Error(options.out, std::to_string(summary.missing) +
+                                   " units of the study are missing; expected those of all shards, made by this very program");
+    std::printf(
+        "this shard is done; %d of %d runs are missing that belong to others (the results are put together by whoever finishes last)\n",
+        summary.missing, summary.runs);
+    return 0;
+  }
+  if (summary.kinds_of_cpu > 1)
+    spdlog::info("driven on {} kinds of CPU, whose kernels differ in last bits: differences between mounts may hold as much",
+                 summary.kinds_of_cpu);
+  if (!summary.results->best) {
+    std::cout << "no candidate fulfils all constraints\n";
+  } else {
+    std::cout << "best: " << summary.advantage << "\n" << summary.command << "\n";
+  }
+  std::cout << "results in " << options.out << " (study.md, results.csv, results.json, plots/, coverage/)\n";
+  return 0;
+}
+
+}  // namespace
+
+Command add_study_command(CLI::App& program) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* command = program.add_subcommand("study", "which mounting of camera and laser maps best, before a bracket is cut");
+  command->add_option("STUDY", options->study, "what varies, over which halls and seeds, and what is judged (docs/studies.md)")->required();
+  command->add_option("--out", options->out, "folder for the results; what it has of this study is gone on from")
+      ->required()
+      ->type_name("DIR");
+  CLI::Option* shard =
+      command->add_option("--shard", options->shard, "drives part I of N (I from 0), in the same folder or one to be merged by copying")
+          ->type_name("I/N");
+  CLI::Option* merge = command->add_flag("--merge", options->merge, "drives nothing, and puts together what shards made")->excludes(shard);
+  CLI::Option* preview =
+      command->add_flag("--preview", options->preview, "draws what each candidate's cameras would see, and drives nothing")
+          ->excludes(shard)
+          ->excludes(merge);
+  command->add_flag("--coverage", options->coverage, "coverage and blind zones of all candidates, without mapping anything")
+      ->excludes(preview);
+  options->common.add_to(*command);
+  command->footer(
+      "Example:\n  waretwin study scenes/agiprobot/studies/smoke.yaml --out out/smoke\n"
+      "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/mount --preview\n"
+      "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/mount --coverage\n\n"
+      "--set also changes the study's own keys, e.g. study.points=64; --seed N replaces its seeds by N, N + 1, ...");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace waretwin

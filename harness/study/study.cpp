@@ -1,0 +1,270 @@
+#include "harness/study/study.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <set>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "harness/gate/measures.h"
+#include "harness/gate/score_file.h"
+#include "harness/run/closed_loop.h"
+#include "harness/score/score_json.h"
+#include "harness/study/study_files.h"
+#include "harness/study/study_units.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// One drive that the study asks for.
+struct Drive {
+  std::size_t candidate;
+  const CandidateInHall* in_hall;
+  RunConfig config;
+  std::string unit;
+
+  std::string text(const std::vector<Candidate>& candidates) const {
+    return candidates[candidate].name + " in " + in_hall->hall + ", seed " + std::to_string(config.scenario.seed);
+  }
+};
+
+class StudyRunner {
+ public:
+  StudyRunner(const StudyRequest& request, const StudyHooks& hooks)
+      : request_(request), hooks_(hooks), setup_(set_up_study(request, [this] { check(); })), store_(request.out / "units") {}
+
+  StudySummary run() {
+    // Nobody takes an earlier study's verdict for this one's.
+    remove_results(request_.out);
+    StudySummary summary;
+    summary.study = setup_.study;
+    summary.missing = cover();
+    if (summary.missing > 0) return summary;
+    choose();
+    if (!request_.coverage_only) drive_all(summary);
+    if (summary.missing > 0) return summary;
+    summary.results = judged_study(setup_.study, std::move(results_));
+    if (summary.results->best) {
+      summary.command = setup_.run_command(setup_.candidates[*summary.results->best]);
+      summary.advantage = advantage_text(setup_.study, *summary.results);
+    }
+    check();
+    write_results(request_.out, setup_, *summary.results);
+    return summary;
+  }
+
+ private:
+  void check() const {
+    if (hooks_.check) hooks_.check();
+  }
+  void report(const StudyProgress& now) const {
+    if (hooks_.progress) hooks_.progress(now);
+  }
+
+  // Coverage of all candidates: this shard's first, then what nobody has measured yet, for without all of it nobody knows what to drive.
+  // Returns how many are missing, where nothing may be measured.
+  int cover() {
+    struct Look {
+      std::size_t candidate;
+      const CandidateInHall* in_hall;
+      std::string unit;
+    };
+    std::vector<Look> looks;
+    results_.resize(setup_.candidates.size());
+    for (std::size_t i = 0; i < setup_.candidates.size(); ++i) {
+      const Candidate& candidate = setup_.candidates[i];
+      results_[i].number = candidate.number;
+      results_[i].name = candidate.name;
+      results_[i].values = candidate.values;
+      if (!candidate.refused.empty()) results_[i].broken.push_back(candidate.refused);
+      for (const CandidateInHall& in_hall : candidate.halls) looks.push_back({i, &in_hall, coverage_unit(in_hall, setup_.study.coverage)});
+    }
+    std::vector<std::size_t> order;
+    for (const bool own : {true, false}) {
+      for (std::size_t i = 0; i < looks.size(); ++i) {
+        if (request_.shard.has(static_cast<int>(i)) == own) order.push_back(i);
+      }
+    }
+    if (request_.merge_only) {
+      const auto missing = std::count_if(looks.begin(), looks.end(), [&](const Look& look) { return !store_.result(look.unit); });
+      if (missing > 0) return static_cast<int>(missing);
+    }
+    // Each candidate is one thread's: many small loops side by side, looked at in stretches so that a stop is heard.
+    constexpr std::size_t kStretch = 16;
+    for (std::size_t begin = 0; begin < order.size(); begin += kStretch) {
+      check();
+      const std::size_t count = std::min(kStretch, order.size() - begin);
+      std::vector<const Look*> missing;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Look& look = looks[order[begin + k]];
+        if (!store_.result(look.unit)) missing.push_back(&look);
+      }
+      // What is shared is made before the threads divide.
+      for (const Look* look : missing) {
+        look->in_hall->shared->coverage(look->in_hall->config.scenario.robot, setup_.study.coverage);
+        look->in_hall->shared->own_body();
+      }
+      parallel_for(missing.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k) {
+          SharedHall& shared = *missing[k]->in_hall->shared;
+          UnitRecord record;
+          record.cpu = cpu_identity();
+          record.result.values =
+              measure_coverage(*missing[k]->in_hall, shared.coverage(missing[k]->in_hall->config.scenario.robot, setup_.study.coverage),
+                               shared.own_body().get(), setup_.study.coverage);
+          store_.write(missing[k]->unit, unit_text(record));
+        }
+      });
+      const std::size_t done = begin + count;
+      report({"coverage", setup_.candidates[looks[order[done - 1]].candidate].name, static_cast<int>(done), static_cast<int>(order.size()),
+              static_cast<double>(done) / static_cast<double>(order.size())});
+    }
+    for (const Look& look : looks) {
+      results_[look.candidate].halls[look.in_hall->hall] =
+          read_unit(store_.result(look.unit).value(), store_.file(look.unit)).result.values;
+    }
+    return 0;
+  }
+
+  // Who is mapped: the baseline, and of those that break no constraint on factors and coverage the best by coverage.
+  void choose() {
+    const StudyConfig& study = setup_.study;
+    const std::size_t by = *study_measure(study.screen.by);
+    const double sign = study_measures()[by].more_is_better ? -1.0 : 1.0;
+    std::vector<std::pair<double, std::size_t>> able;
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      CandidateResult& candidate = results_[i];
+      if (setup_.candidates[i].halls.empty()) {
+        candidate.state = CandidateState::kRefused;
+        continue;
+      }
+      const StudyValues means = mean_coverage(candidate);
+      for (std::string& text : broken_by_measures(study, means, MeasureSource::kCoverage)) candidate.broken.push_back(std::move(text));
+      if (i == 0) {
+        if (request_.coverage_only) candidate.state = CandidateState::kScreenedOut;
+        continue;
+      }
+      if (!candidate.broken.empty()) {
+        candidate.state = CandidateState::kRefused;
+      } else if (request_.coverage_only) {
+        candidate.state = CandidateState::kScreenedOut;
+      } else {
+        able.emplace_back(means[by] ? sign * *means[by] : 1e300, i);
+      }
+    }
+    std::sort(able.begin(), able.end());
+    if (study.screen.keep == 0) return;
+    for (std::size_t k = static_cast<std::size_t>(study.screen.keep); k < able.size(); ++k)
+      results_[able[k].second].state = CandidateState::kScreenedOut;
+  }
+
+  std::vector<Drive> drives() const {
+    std::vector<Drive> all;
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      if (results_[i].state != CandidateState::kMapped) continue;
+      for (const CandidateInHall& in_hall : setup_.candidates[i].halls) {
+        for (const double seed : setup_.study.seeds) {
+          RunConfig config = in_hall.config;
+          config.scenario.seed = static_cast<std::uint64_t>(seed);
+          std::string unit = run_unit(config, *in_hall.shared);
+          all.push_back({i, &in_hall, std::move(config), std::move(unit)});
+        }
+      }
+    }
+    return all;
+  }
+
+  // A result that driving again would only repeat. What could not be driven may have been the disk's fault.
+  bool is_done(const std::string& unit) const {
+    const std::optional<std::string> text = store_.result(unit);
+    return text && read_unit(*text, store_.file(unit)).result.error.empty();
+  }
+
+  UnitRecord drive(const Drive& one, const std::function<void(double)>& progress) const {
+    UnitRecord record;
+    record.cpu = cpu_identity();
+    record.result.values.resize(study_measures().size());
+    std::exception_ptr stopped;  // by the caller, which is no fault of the drive
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      const ClosedLoopResult result = run_closed_loop(one.config, one.in_hall->shared->scene, {}, [&](double share, const ObjectMap&) {
+        try {
+          progress(share);
+        } catch (...) {
+          stopped = std::current_exception();
+          throw;
+        }
+      });
+      record.result.digest = result.score.digest;
+      const JudgedScore score = judged_score(score_json(result.score), "score.json");
+      for (std::size_t k = 0; k < measures().size(); ++k) {
+        const std::optional<std::size_t> m = study_measure(measures()[k].name);
+        if (m) record.result.values[*m] = score.values[k];
+      }
+    } catch (const Error& error) {
+      if (stopped) std::rethrow_exception(stopped);
+      record.result.error = error.what();
+    }
+    record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return record;
+  }
+
+  void drive_all(StudySummary& summary) {
+    const std::vector<Drive> all = drives();
+    const int count = static_cast<int>(all.size()), of = request_.merge_only ? 0 : request_.shard.size(count);
+    summary.runs = count;
+    int number = 0;
+    for (int i = 0; i < count; ++i) {
+      if (request_.merge_only || !request_.shard.has(i)) continue;
+      const Drive& one = all[static_cast<std::size_t>(i)];
+      ++number;
+      check();
+      if (is_done(one.unit)) {
+        ++summary.found;
+        continue;
+      }
+      const UnitRecord record = drive(one, [&](double share) {
+        check();
+        report({"runs", one.text(setup_.candidates), number, of, (number - 1 + share) / of});
+      });
+      store_.write(one.unit, unit_text(record));
+    }
+    std::set<std::string> kinds;
+    std::string times = "candidate,hall,seed,wall_s\n";
+    for (const Drive& one : all) {
+      const std::optional<std::string> text = store_.result(one.unit);
+      if (!text) {
+        ++summary.missing;
+        continue;
+      }
+      UnitRecord record = read_unit(*text, store_.file(one.unit));
+      kinds.insert(record.cpu);
+      times += setup_.candidates[one.candidate].name + "," + one.in_hall->hall + "," + std::to_string(one.config.scenario.seed) + "," +
+               std::to_string(record.wall_s) + "\n";
+      record.result.hall = one.in_hall->hall;
+      record.result.seed = one.config.scenario.seed;
+      results_[one.candidate].runs.push_back(std::move(record.result));
+    }
+    summary.kinds_of_cpu = static_cast<int>(kinds.size());
+    // Apart from the results, which are the same whoever made them.
+    if (summary.missing == 0) write_file(request_.out / "timing.csv", times);
+  }
+
+  const StudyRequest& request_;
+  const StudyHooks& hooks_;
+  StudySetup setup_;
+  UnitStore store_;
+  std::vector<CandidateResult> results_;  // as many as candidates
+};
+
+}  // namespace
+
+StudySummary run_study(const StudyRequest& request, const StudyHooks& hooks) { return StudyRunner(request, hooks).run(); }
+
+}  // namespace waretwin

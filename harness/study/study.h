@@ -1,0 +1,56 @@
+// `waretwin study`: candidates of a vehicle's sensors driven through the same halls with the same seeds, and compared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "harness/study/study_results.h"
+#include "harness/study/study_setup.h"
+#include "harness/units/units.h"
+
+namespace waretwin {
+
+struct StudyRequest {
+  std::filesystem::path file;
+  std::vector<Setting> settings;      // for every run, before what varies; study.KEY changes the study itself
+  std::optional<std::uint64_t> seed;  // in place of the first of the study's seeds; the others follow it
+  std::filesystem::path out;
+  Shard shard;
+  bool merge_only = false;     // drives nothing
+  bool coverage_only = false;  // maps nothing
+};
+
+struct StudyProgress {
+  std::string stage;  // coverage, runs
+  std::string what;   // "c012 in agiprobot, seed 1"
+  int number = 0, of = 0;
+  double share = 0.0;  // of this stage
+};
+
+struct StudyHooks {
+  std::function<void()> check;  // often; may throw to stop: what is done stays, and what is under way is not done
+  std::function<void(const StudyProgress&)> progress;
+};
+
+struct StudySummary {
+  StudyConfig study;
+  std::optional<StudyResults> results;  // nothing where other shards' runs are missing
+  std::string command;                  // of `waretwin run` for the best
+  std::string advantage;                // of the best over the baseline, in words; empty where there is none to compare
+  int runs = 0, missing = 0;            // of all shards
+  int found = 0;                        // of this shard, there already
+  int kinds_of_cpu = 1;
+};
+
+// Measures the coverage of every candidate, drives this shard's share of the runs that follow, and, where it was the last part, writes
+// results.json, results.csv, runs.csv, study.md, plots/ and coverage/ into OUT. What units were found there, made by the same program of
+// the same scenario and configuration, is not done again. Throws Error for what is wrong with the study before anything is driven; what
+// goes wrong in a drive stands with its candidate.
+StudySummary run_study(const StudyRequest& request, const StudyHooks& hooks = {});
+
+}  // namespace waretwin

@@ -1,0 +1,38 @@
+#include "harness/units/run_unit.h"
+
+#include "core/files.h"
+#include "harness/units/units.h"
+#include "mapper/detect/model_files.h"
+#include "mapper/detect/shipped_models.h"
+
+namespace waretwin {
+
+namespace {
+
+void add_detector(const RunConfig& config, Digest& digest) {
+  if (config.truth_stages.detector) return;
+  if (config.mapper.detector == "yolo") {
+    const ModelFiles files = find_model_files(model_or_shipped(config.mapper.model), config.mapper.detect.names);
+    for (const std::filesystem::path& file : {files.cfg, files.weights, files.onnx, files.names}) {
+      if (!file.empty()) digest.add(read_file(file));
+    }
+  }
+  if (config.mapper.detector == "boxes") digest.add(read_file(config.mapper.boxes));
+}
+
+}  // namespace
+
+void add_run(const RunConfig& config, const Scene& scene, Digest& digest) {
+  RunConfig without_names = config;
+  without_names.mapper.model.clear();
+  without_names.mapper.boxes.clear();
+  without_names.mapper.detect.names.clear();
+  without_names.resume.clear();
+  without_names.scenario.robot.model.clear();  // what is in it stands in the scene
+  digest.add(write_config([&](Fields& f) { without_names.visit(f); }));
+  add_scene(scene, digest);
+  add_detector(config, digest);
+  if (!config.resume.empty()) digest.add(read_file(config.resume));
+}
+
+}  // namespace waretwin

@@ -1,0 +1,12 @@
+// What a run's result depends on, by contents.
+#pragma once
+
+#include "core/digest.h"
+#include "harness/run/run_config.h"
+
+namespace waretwin {
+
+// Adds configuration, scene, the detector's files and the map that is gone on from. Their bytes count, not where they lie.
+void add_run(const RunConfig& config, const Scene& scene, Digest& digest);
+
+}  // namespace waretwin
