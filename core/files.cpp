@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -17,8 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Also two threads of this process may write the same file.
 fs::path temporary_name(const fs::path& path) {
-  fs::path name = path.parent_path() / ("." + path.stem().string() + ".partial-" + process_name());
+  static std::atomic<unsigned> count{0};
+  fs::path name = path.parent_path() / ("." + path.stem().string() + ".partial-" + process_name() + "-" + std::to_string(count++));
   name += path.extension();
   return name;
 }

@@ -148,7 +148,7 @@ void Mapper::take(RgbdFrame frame) {
     ++map_.frames_without_pose;
     return;
   }
-  if (info_.lasers.empty()) map_.trajectory.push_back({frame.stamp, *X_WB});
+  if (info_.lasers.empty()) map_.trajectory.push_back({frame.stamp, *X_WB, std::nullopt, stages_.localiser->localised()});
   load_pictures(frame);
   own_body_.mask(frame);
   map_frame(frame, *X_WB * camera->second.X_BC, report);

@@ -61,7 +61,8 @@ std::vector<Stamp> camera_stamps(const std::vector<Source>& sources) {
   return stamps;
 }
 
-// The box of the vehicle's model, a little wider than it, since depth and ranges err. Nothing but the vehicle can be in there.
+// The box of the vehicle's model, a little wider than it, since depth and ranges err. An open frame's box holds more than the vehicle: what
+// it carries, or what it stands around, is masked, too.
 std::optional<Eigen::AlignedBox3d> own_body(const Scene& scene) {
   if (scene.vehicle.empty()) return std::nullopt;
   constexpr double kMargin = 0.03;
@@ -108,7 +109,7 @@ struct SimulatedStream::State {
   double last_frame_ms = 0.0;
 
   void describe();
-  // Where it rolls no vehicle shakes: the speed is that of the last hundredth of a second.
+  // How fast the vehicle rolls, over the last hundredth of a second; 0 for a mount that does not shake.
   double speed(const MountError& mount, Stamp stamp) const;
   Pose X_WC(const std::string& camera, Stamp stamp) const;
   Pose X_WL(const std::string& laser, Stamp stamp) const;

@@ -21,7 +21,7 @@ constexpr std::array<Measure, 23> kMeasures = {{
     {"ate_max_m", "/trajectory/ate_max_m", false, 0.01, "trajectory error, largest, m"},
     {"rpe_trans_m", "/trajectory/rpe_trans_m", false, 0.002, "relative pose error, m"},
     {"rpe_rot_deg", "/trajectory/rpe_rot_deg", false, 0.05, "relative pose error, deg"},
-    {"unlocalised_share", "/trajectory/unlocalised_share", false, 0.005, "share of the way on odometry alone"},
+    {"unlocalised_share", "/trajectory/unlocalised_share", false, 0.005, "share of the poses on the move that rest on odometry alone"},
     {"surface_mean_m", "/surface/mean_m", false, 0.001, "mean distance of the mesh from the hall, m"},
     {"surface_found", "/surface/found", true, 0.005, "share of the seen surface that the mesh has"},
     {"detection_ap50", "/detection/ap50", true, 0.01, "the detector's AP50 in the mapped frames"},

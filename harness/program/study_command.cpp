@@ -20,6 +20,7 @@ namespace {
 struct StudyOptions {
   CommonOptions common;
   std::string study, out, shard;
+  int jobs = 0;
   bool merge = false, preview = false, coverage = false;
 };
 
@@ -33,6 +34,7 @@ int run(const StudyOptions& options) {
   if (!options.shard.empty()) request.shard = parse_shard(options.shard);
   request.merge_only = options.merge;
   request.coverage_only = options.coverage;
+  request.jobs = options.jobs;
   StudySummary summary;
   {
     const InterruptWatch watch;
@@ -64,12 +66,9 @@ int run(const StudyOptions& options) {
   if (summary.kinds_of_cpu > 1)
     spdlog::info("driven on {} kinds of CPU, whose kernels differ in last bits: differences between mounts may hold as much",
                  summary.kinds_of_cpu);
-  if (!summary.results->best) {
-    std::cout << "no candidate fulfils all constraints\n";
-  } else {
-    std::cout << "best: " << summary.advantage << "\n" << summary.command << "\n";
-  }
-  std::cout << "results in " << options.out << " (study.md, results.csv, results.json, plots/, coverage/)\n";
+  std::cout << "best: " << summary.verdict << "\nresults in " << summary.folder.string()
+            << " (study.md, results.csv, results.json, plots/, coverage/";
+  std::cout << (summary.results->best ? ", best/)\n" : ")\n");
   return 0;
 }
 
@@ -92,6 +91,11 @@ Command add_study_command(CLI::App& program) {
           ->excludes(merge);
   command->add_flag("--coverage", options->coverage, "coverage and blind zones of all candidates, without mapping anything")
       ->excludes(preview);
+  command
+      ->add_option("--jobs", options->jobs,
+                   "drives at a time, each on one thread and in up to 1 GB; 1: one, on all threads; 0: as many as threads and memory allow")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096));
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin study scenes/agiprobot/studies/smoke.yaml --out out/smoke\n"

@@ -12,6 +12,7 @@
 #include "harness/truth/true_list.h"
 #include "harness/truth/truth_frames.h"
 #include "mapper/integrate/tsdf_volume.h"
+#include "mapper/own_body_mask.h"
 #include "sensors/depth_field.h"
 #include "sim/ray_caster.h"
 #include "sim/visibility.h"
@@ -62,6 +63,15 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   SurfaceMeter surface(stream.ray_caster());
   SensorPoses sensor_poses(stream, config.scenario.sensors);
   std::vector<ObjectView> views;  // of the frame that was mapped last
+  // What the mapper leaves out of the measured depth is no missing measurement.
+  const OwnBodyMask own_body(stream.info());
+  const auto without_vehicle = [&own_body](const FrameTruth& truth) {
+    RgbdFrame frame;
+    frame.sensor = truth.sensor;
+    frame.depth = truth.ideal_depth;
+    own_body.mask(frame);
+    return frame.depth;
+  };
   const bool detects = config.truth_stages.detector || config.mapper.detector != "none";
   DetectionLog detections(*scene, config.detection_score);
   ClosedLoopResult result;
@@ -73,7 +83,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
     const CameraConfig& camera = cameras.at(frame.frame.sensor);
     if (config.extras.surface) surface.add_frame(camera, truth.X_WC);
     if (config.extras.depth)
-      depth_quality.add(frame.frame.depth, truth.ideal_depth, truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
+      depth_quality.add(frame.frame.depth, without_vehicle(truth), truth.instances, fields.at(frame.frame.sensor), camera.depth_min_m,
                         camera.depth_max_m);
     if (!config.truth_frames.enabled && !detects) return;
     WARETWIN_CHECK(truth.stamp == frame.frame.stamp && truth.sensor == frame.frame.sensor, "the mapped frame is the stream's newest");
@@ -97,6 +107,9 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
   result.truth = true_list(*scene, coverage.get());
+  if (!config.extras.visible_share) {
+    for (ListedObject& object : result.truth) object.visible_fraction = 1.0;
+  }
   result.trajectory = stamped(map.trajectory);
   result.sensor_poses = sensor_poses.poses();
   for (const StampedPose& point : result.trajectory) result.true_trajectory.push_back({point.stamp, stream.true_X_WB(point.stamp)});

@@ -35,7 +35,12 @@ std::optional<double> as_number(const std::string& text) {
 
 std::string number_text(double value) {
   std::array<char, 32> buffer{};
-  const auto [end, status] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  const auto [end, status] = [&] {
+    // Whole-number keys take no exponent.
+    char* const last = buffer.data() + buffer.size();
+    const bool plain = value == 0.0 || (std::abs(value) >= 1e-6 && std::abs(value) < 1e15);
+    return plain ? std::to_chars(buffer.data(), last, value, std::chars_format::fixed) : std::to_chars(buffer.data(), last, value);
+  }();
   return status == std::errc() ? std::string(buffer.data(), end) : std::to_string(value);
 }
 

@@ -14,6 +14,7 @@ class Condition {
 
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
+  bool is_order() const { return op_ != "==" && op_ != "!="; }
   // Nothing of the name (a measure that has no value) fulfils no condition.
   bool holds(const std::optional<std::string>& value) const;
   bool holds(const std::optional<double>& value) const;

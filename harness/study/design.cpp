@@ -19,24 +19,28 @@ std::string level_text(const std::string& text) {
   return number ? number_text(*number) : text;
 }
 
+// The value at a share in [0, 1] of a range.
+std::string in_range(const Factor& factor, double share) {
+  const double low = *factor.from, high = *factor.to;
+  const double unit = factor.multiple_of > 0.0 ? factor.multiple_of : std::pow(10.0, std::floor(std::log10(high - low)) - 3.0);
+  // Divided by the inverse of small units, so that 1.2 is no 1.2000000000000002.
+  const double count = std::round((low + share * (high - low)) / unit);
+  const double value = unit < 1.0 ? count / std::round(1.0 / unit) : count * unit;
+  return number_text(std::clamp(value, low, high));
+}
+
 std::vector<std::string> levels(const Factor& factor) {
   std::vector<std::string> list;
   for (const std::string& value : factor.values) list.push_back(level_text(value));
   if (!factor.is_range()) return list;
-  for (int i = 0; i < factor.steps; ++i) {
-    const double share = factor.steps > 1 ? static_cast<double>(i) / (factor.steps - 1) : 0.0;
-    // Rounded, so that 0.8 to 1.6 in five steps holds 1.2 and no 1.2000000000000002.
-    list.push_back(number_text(std::round((*factor.from + share * (*factor.to - *factor.from)) * 1e9) / 1e9));
-  }
+  for (int i = 0; i < factor.steps; ++i)
+    list.push_back(in_range(factor, factor.steps > 1 ? static_cast<double>(i) / (factor.steps - 1) : 0.0));
   return list;
 }
 
 // The value at a share in [0, 1) of the factor's space.
 std::string at_share(const Factor& factor, double share) {
-  if (factor.is_range()) {
-    constexpr double kDigits = 1e3;
-    return number_text(std::round((*factor.from + share * (*factor.to - *factor.from)) * kDigits) / kDigits);
-  }
+  if (factor.is_range()) return in_range(factor, share);
   const auto index = static_cast<std::size_t>(share * static_cast<double>(factor.values.size()));
   return level_text(factor.values[std::min(index, factor.values.size() - 1)]);
 }

@@ -12,8 +12,8 @@ namespace waretwin {
 using DesignPoint = std::vector<std::string>;
 
 // grid: every combination, the first factor varying slowest. list: the factors' values side by side. random: `points` independent uniform
-// draws. sobol: the first `points` of a Sobol' sequence (Joe and Kuo's directions), which fills the space evenly; ranges are taken to 3
-// digits behind the point, lists of values as equal parts of it. Without repetitions. Throws Error for more points than a study can hold.
+// draws. sobol: the first `points` of a Sobol' sequence (Joe and Kuo's directions), which fills the space evenly; ranges are rounded
+// (Factor::multiple_of), lists of values are equal parts of it. Without repetitions. Throws Error for more points than a study can hold.
 std::vector<DesignPoint> design_points(const StudyConfig& study);
 
 constexpr std::size_t kMostCandidates = 100000;

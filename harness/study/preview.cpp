@@ -77,8 +77,10 @@ int draw_previews(const StudyRequest& request, const StudyHooks& hooks) {
   const CandidateInHall& baseline = setup.candidates.front().halls.front();
   if (baseline.config.scenario.sensors.cameras.empty())
     throw Error(request.file, "the vehicle has no camera; expected one to look through");
-  const double moment =
-      baseline.shared->coverage(baseline.config.scenario.robot, setup.study.coverage).best_moment(baseline.config.scenario);
+  const double moment = baseline.shared->coverage(baseline.baseline_robot, setup.study.coverage).best_moment(baseline.config.scenario);
+  // Pictures of an earlier, larger study would be taken for this one's.
+  std::error_code none;
+  std::filesystem::remove_all(request.out / "preview", none);
   make_folder(request.out / "preview");
   std::map<const SharedHall*, std::shared_ptr<RayCaster>> casters;
   std::vector<cv::Mat> pictures;

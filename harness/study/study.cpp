@@ -4,11 +4,14 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <map>
+#include <mutex>
 #include <set>
 
 #include "core/error.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/side_by_side.h"
 #include "harness/gate/measures.h"
 #include "harness/gate/score_file.h"
 #include "harness/run/closed_loop.h"
@@ -40,8 +43,6 @@ class StudyRunner {
       : request_(request), hooks_(hooks), setup_(set_up_study(request, [this] { check(); })), store_(request.out / "units") {}
 
   StudySummary run() {
-    // Nobody takes an earlier study's verdict for this one's.
-    remove_results(request_.out);
     StudySummary summary;
     summary.study = setup_.study;
     summary.missing = cover();
@@ -50,12 +51,10 @@ class StudyRunner {
     if (!request_.coverage_only) drive_all(summary);
     if (summary.missing > 0) return summary;
     summary.results = judged_study(setup_.study, std::move(results_));
-    if (summary.results->best) {
-      summary.command = setup_.run_command(setup_.candidates[*summary.results->best]);
-      summary.advantage = advantage_text(setup_.study, *summary.results);
-    }
-    check();
-    write_results(request_.out, setup_, *summary.results);
+    summary.verdict = verdict_text(setup_.study, *summary.results);
+    summary.folder = folder();
+    write_results(folder(), setup_, *summary.results, [this] { check(); });
+    if (!request_.coverage_only) write_file(folder() / "timing.csv", times_);
     return summary;
   }
 
@@ -66,6 +65,9 @@ class StudyRunner {
   void report(const StudyProgress& now) const {
     if (hooks_.progress) hooks_.progress(now);
   }
+
+  // What coverage alone says does not replace what was driven.
+  fs::path folder() const { return request_.coverage_only ? request_.out / "screening" : request_.out; }
 
   // Coverage of all candidates: this shard's first, then what nobody has measured yet, for without all of it nobody knows what to drive.
   // Returns how many are missing, where nothing may be measured.
@@ -100,25 +102,27 @@ class StudyRunner {
     for (std::size_t begin = 0; begin < order.size(); begin += kStretch) {
       check();
       const std::size_t count = std::min(kStretch, order.size() - begin);
-      std::vector<const Look*> missing;
+      // By unit: candidates that differ in the mapper alone see the same. What is shared is made before the threads divide.
+      struct Missing {
+        const Look* look;
+        const CoverageHall* hall;
+        std::shared_ptr<const RayCaster> own_body;
+      };
+      std::vector<Missing> missing;
+      std::set<std::string> names;
       for (std::size_t k = 0; k < count; ++k) {
         const Look& look = looks[order[begin + k]];
-        if (!store_.result(look.unit)) missing.push_back(&look);
-      }
-      // What is shared is made before the threads divide.
-      for (const Look* look : missing) {
-        look->in_hall->shared->coverage(look->in_hall->config.scenario.robot, setup_.study.coverage);
-        look->in_hall->shared->own_body();
+        if (store_.result(look.unit) || !names.insert(look.unit).second) continue;
+        SharedHall& shared = *look.in_hall->shared;
+        missing.push_back({&look, &shared.coverage(look.in_hall->baseline_robot, setup_.study.coverage), shared.own_body()});
       }
       parallel_for(missing.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t k = from; k < to; ++k) {
-          SharedHall& shared = *missing[k]->in_hall->shared;
+          const Missing& one = missing[k];
           UnitRecord record;
           record.cpu = cpu_identity();
-          record.result.values =
-              measure_coverage(*missing[k]->in_hall, shared.coverage(missing[k]->in_hall->config.scenario.robot, setup_.study.coverage),
-                               shared.own_body().get(), setup_.study.coverage);
-          store_.write(missing[k]->unit, unit_text(record));
+          record.result.values = measure_coverage(*one.look->in_hall, *one.hall, one.own_body.get(), setup_.study.coverage);
+          store_.write(one.look->unit, unit_text(record));
         }
       });
       const std::size_t done = begin + count;
@@ -131,6 +135,8 @@ class StudyRunner {
     }
     return 0;
   }
+
+  static constexpr double kNoValue = 1e300;  // comes last
 
   // Who is mapped: the baseline, and of those that break no constraint on factors and coverage the best by coverage.
   void choose() {
@@ -155,11 +161,13 @@ class StudyRunner {
       } else if (request_.coverage_only) {
         candidate.state = CandidateState::kScreenedOut;
       } else {
-        able.emplace_back(means[by] ? sign * *means[by] : 1e300, i);
+        able.emplace_back(means[by] ? sign * *means[by] : kNoValue, i);
       }
     }
-    std::sort(able.begin(), able.end());
     if (study.screen.keep == 0) return;
+    if (std::none_of(able.begin(), able.end(), [](const auto& candidate) { return candidate.first < kNoValue; }) && !able.empty())
+      throw Error(request_.file, "screen.by: '" + study.screen.by + "' has no value in these halls; expected another measure of coverage");
+    std::sort(able.begin(), able.end());
     for (std::size_t k = static_cast<std::size_t>(study.screen.keep); k < able.size(); ++k)
       results_[able[k].second].state = CandidateState::kScreenedOut;
   }
@@ -167,6 +175,7 @@ class StudyRunner {
   std::vector<Drive> drives() const {
     std::vector<Drive> all;
     for (std::size_t i = 0; i < results_.size(); ++i) {
+      check();
       if (results_[i].state != CandidateState::kMapped) continue;
       for (const CandidateInHall& in_hall : setup_.candidates[i].halls) {
         for (const double seed : setup_.study.seeds) {
@@ -215,28 +224,68 @@ class StudyRunner {
     return record;
   }
 
+  // As many at a time as there are threads and memory, each on one thread: what a drive cannot share among threads then costs nothing.
+  void drive_side_by_side(const std::vector<const Drive*>& drives) {
+    constexpr double kBytes = 1e9;  // of a drive, generously
+    std::size_t jobs = static_cast<std::size_t>(request_.jobs);
+    if (jobs == 0) jobs = std::min(static_cast<std::size_t>(thread_count()), jobs_in_memory(kBytes));
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::map<std::size_t, double> shares;  // of the drives under way
+    std::size_t done = 0;
+    bool stopped = false;
+    const auto work = [&](std::size_t) {
+      for (std::size_t i = next++; i < drives.size(); i = next++) {
+        const Drive& one = *drives[i];
+        const UnitRecord record = drive(one, [&](double share) {
+          const std::lock_guard lock(mutex);
+          if (stopped) throw Error("stopped");
+          try {
+            check();
+            shares[i] = share;
+            double all = static_cast<double>(done);
+            for (const auto& under_way : shares) all += under_way.second;
+            const auto of = static_cast<double>(drives.size());
+            report({"runs", one.text(setup_.candidates), static_cast<int>(i) + 1, static_cast<int>(drives.size()), all / of});
+          } catch (...) {
+            stopped = true;  // the others hear of it, too
+            throw;
+          }
+        });
+        store_.write(one.unit, unit_text(record));
+        const std::lock_guard lock(mutex);
+        shares.erase(i);
+        ++done;
+      }
+    };
+    check();
+    jobs = std::min(jobs, drives.size());
+    if (jobs == 1) {
+      work(0);  // on all threads
+    } else {
+      run_side_by_side(jobs, work);
+    }
+  }
+
   void drive_all(StudySummary& summary) {
     const std::vector<Drive> all = drives();
-    const int count = static_cast<int>(all.size()), of = request_.merge_only ? 0 : request_.shard.size(count);
+    const int count = static_cast<int>(all.size());
     summary.runs = count;
-    int number = 0;
+    // Nobody takes an earlier study's verdict for this one's; but one that would only be made again stays.
+    const bool all_done = std::all_of(all.begin(), all.end(), [this](const Drive& one) { return is_done(one.unit); });
+    if (!request_.merge_only && !all_done) remove_results(request_.out);
+    std::vector<const Drive*> to_do;
     for (int i = 0; i < count; ++i) {
       if (request_.merge_only || !request_.shard.has(i)) continue;
       const Drive& one = all[static_cast<std::size_t>(i)];
-      ++number;
-      check();
       if (is_done(one.unit)) {
         ++summary.found;
-        continue;
+      } else {
+        to_do.push_back(&one);
       }
-      const UnitRecord record = drive(one, [&](double share) {
-        check();
-        report({"runs", one.text(setup_.candidates), number, of, (number - 1 + share) / of});
-      });
-      store_.write(one.unit, unit_text(record));
     }
-    std::set<std::string> kinds;
-    std::string times = "candidate,hall,seed,wall_s\n";
+    drive_side_by_side(to_do);
+    times_ = "candidate,hall,seed,wall_s\n";
     for (const Drive& one : all) {
       const std::optional<std::string> text = store_.result(one.unit);
       if (!text) {
@@ -244,16 +293,14 @@ class StudyRunner {
         continue;
       }
       UnitRecord record = read_unit(*text, store_.file(one.unit));
-      kinds.insert(record.cpu);
-      times += setup_.candidates[one.candidate].name + "," + one.in_hall->hall + "," + std::to_string(one.config.scenario.seed) + "," +
-               std::to_string(record.wall_s) + "\n";
+      kinds_of_cpu_.insert(record.cpu);
+      times_ += setup_.candidates[one.candidate].name + "," + one.in_hall->hall + "," + std::to_string(one.config.scenario.seed) + "," +
+                std::to_string(record.wall_s) + "\n";
       record.result.hall = one.in_hall->hall;
       record.result.seed = one.config.scenario.seed;
       results_[one.candidate].runs.push_back(std::move(record.result));
     }
-    summary.kinds_of_cpu = static_cast<int>(kinds.size());
-    // Apart from the results, which are the same whoever made them.
-    if (summary.missing == 0) write_file(request_.out / "timing.csv", times);
+    summary.kinds_of_cpu = static_cast<int>(kinds_of_cpu_.size());
   }
 
   const StudyRequest& request_;
@@ -261,6 +308,8 @@ class StudyRunner {
   StudySetup setup_;
   UnitStore store_;
   std::vector<CandidateResult> results_;  // as many as candidates
+  std::set<std::string> kinds_of_cpu_;
+  std::string times_;  // timing.csv: apart from the results, which are the same whoever made them
 };
 
 }  // namespace

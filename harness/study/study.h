@@ -23,6 +23,7 @@ struct StudyRequest {
   Shard shard;
   bool merge_only = false;     // drives nothing
   bool coverage_only = false;  // maps nothing
+  int jobs = 0;                // drives at a time, each on one thread; 0: as many as there are threads and memory
 };
 
 struct StudyProgress {
@@ -40,17 +41,17 @@ struct StudyHooks {
 struct StudySummary {
   StudyConfig study;
   std::optional<StudyResults> results;  // nothing where other shards' runs are missing
-  std::string command;                  // of `waretwin run` for the best
-  std::string advantage;                // of the best over the baseline, in words; empty where there is none to compare
+  std::string verdict;                  // which is the best and by how much, or why there is none
+  std::filesystem::path folder;         // of the results: OUT, of coverage alone OUT/screening
   int runs = 0, missing = 0;            // of all shards
   int found = 0;                        // of this shard, there already
   int kinds_of_cpu = 1;
 };
 
 // Measures the coverage of every candidate, drives this shard's share of the runs that follow, and, where it was the last part, writes
-// results.json, results.csv, runs.csv, study.md, plots/ and coverage/ into OUT. What units were found there, made by the same program of
-// the same scenario and configuration, is not done again. Throws Error for what is wrong with the study before anything is driven; what
-// goes wrong in a drive stands with its candidate.
+// results.json, results.csv, runs.csv, study.md, best/, plots/ and coverage/ into OUT (with coverage alone: into OUT/screening). What units
+// were found there, made by the same program of the same scenario and configuration, is not done again. Throws Error for what is wrong with
+// the study before anything is driven; what goes wrong in a drive stands with its candidate.
 StudySummary run_study(const StudyRequest& request, const StudyHooks& hooks = {});
 
 }  // namespace waretwin

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 #include "core/config.h"
 #include "core/error.h"
@@ -35,8 +36,13 @@ void Factor::visit(Fields& f) {
   f("from", from, "or a range: its lower end");
   f("to", to, "its upper end");
   f("steps", steps, "of the range in a grid, ends included", {.min = 1, .max = 1e5});
+  f("multiple_of", multiple_of,
+    "values of the range are rounded to multiples of this, e.g. 1 for whole numbers; 0: three digits finer than it",
+    {.min = 0, .max = 1e9});
   f("baseline", baseline, "value of the candidate that the others are compared with; empty: as the halls' scenarios have it");
   if (key.empty()) f.reject("key", "is empty; expected a configuration key");
+  if (key == "seed" || std::count(also.begin(), also.end(), "seed") > 0)
+    f.reject("key", "is 'seed', which all candidates share; expected another, and seeds under `seeds`");
   if (values.empty() == !from.has_value()) f.reject("values", "expected either values, or from and to");
   if (from.has_value() != to.has_value()) f.reject(from ? "from" : "to", "is named alone; expected from and to");
   if (from && !(*from < *to)) f.reject("to", "is not above from; expected from < to");
@@ -117,6 +123,8 @@ void StudyConfig::visit(Fields& f) {
   if (vary.empty()) f.reject("vary", "is empty; expected at least one factor by name");
   for (const auto& [factor_name, factor] : vary) {
     if (!is_plain_name(factor_name)) f.reject("vary", "'" + factor_name + "'; expected a name of letters, digits, '-' and '_'");
+    static const std::set<std::string> kColumns = {"candidate", "state", "feasible", "front", "broken", "hall", "seed", "digest", "error"};
+    if (kColumns.contains(factor_name)) f.reject("vary", "'" + factor_name + "' is a column of the results; expected another name");
     if (study_measure(factor_name)) f.reject("vary", "'" + factor_name + "' is a measure's name; expected another");
     if (design != "list") continue;
     if (factor.is_range()) f.reject("vary", "'" + factor_name + "' is a range; expected values in design list");
@@ -128,7 +136,11 @@ void StudyConfig::visit(Fields& f) {
   for (const std::string& text : constraints) {
     try {
       const Condition condition = Condition::parse(text);
-      if (!vary.contains(condition.name()) && !study_measure(condition.name()))
+      const auto factor = vary.find(condition.name());
+      const auto is_word = [](const std::string& value) { return !as_number(value); };
+      if (factor != vary.end() && condition.is_order() && std::any_of(factor->second.values.begin(), factor->second.values.end(), is_word))
+        f.reject("constraints", "'" + text + "': '" + condition.name() + "' has words for values; expected == or !=");
+      if (factor == vary.end() && !study_measure(condition.name()))
         f.reject("constraints", "'" + text + "': '" + condition.name() + "' is neither a factor nor a measure");
     } catch (const Error& error) {
       f.reject("constraints", error.what());

@@ -32,6 +32,7 @@ struct Factor {
   std::vector<std::string> values;  // numbers or words; of a list, side by side with the other factors' values
   std::optional<double> from, to;   // or a range, ends included
   int steps = 5;                    // of the range in a grid
+  double multiple_of = 0.0;         // what values of the range are rounded to; 0: a thousandth of the range's order of magnitude
   std::string baseline;             // empty: as the halls' scenarios have it
 
   bool is_range() const { return from.has_value(); }

@@ -47,6 +47,21 @@ void measure(CandidateResult& candidate, const CandidateResult& baseline, double
   }
 }
 
+// Of each measure the drives (of coverage: the halls) in which any candidate has a value. Who has none where others have one did not do
+// as well there, but worse: no object was found whose error could be measured.
+std::vector<std::size_t> drives_of_measures(const std::vector<CandidateResult>& candidates) {
+  std::vector<std::size_t> counts;
+  for (std::size_t m = 0; m < study_measures().size(); ++m) {
+    std::set<std::pair<std::string, std::uint64_t>> drives;
+    for (const CandidateResult& candidate : candidates) {
+      if (study_measures()[m].source == MeasureSource::kRun && candidate.state != CandidateState::kMapped) continue;
+      for (const auto& entry : values_of(candidate, m)) drives.insert(entry.first);
+    }
+    counts.push_back(drives.size());
+  }
+  return counts;
+}
+
 // How good, more is better.
 double merit(const CandidateResult& candidate, std::size_t measure) {
   const double mean = candidate.measured[measure]->mean;
@@ -68,14 +83,18 @@ std::vector<std::size_t> indices_of(const std::vector<std::string>& names) {
   return indices;
 }
 
-bool has_all(const CandidateResult& candidate, const std::vector<std::size_t>& measures) {
-  return std::all_of(measures.begin(), measures.end(), [&](std::size_t m) { return candidate.measured[m].has_value(); });
+// Compared with others by a measure: it has a value wherever anybody has one.
+bool comparable(const CandidateResult& candidate, std::size_t m, const std::vector<std::size_t>& drives) {
+  return candidate.measured[m] && static_cast<std::size_t>(candidate.measured[m]->count) == drives[m];
 }
 
-void find_front(std::vector<CandidateResult>& candidates, const std::vector<std::size_t>& measures) {
+void find_front(std::vector<CandidateResult>& candidates, const std::vector<std::size_t>& measures, const std::vector<std::size_t>& drives,
+                bool mapped) {
   std::vector<CandidateResult*> able;
   for (CandidateResult& candidate : candidates) {
-    if (candidate.feasible() && has_all(candidate, measures)) able.push_back(&candidate);
+    if (mapped && candidate.state != CandidateState::kMapped) continue;
+    const bool all = std::all_of(measures.begin(), measures.end(), [&](std::size_t m) { return comparable(candidate, m, drives); });
+    if (candidate.feasible() && all) able.push_back(&candidate);
   }
   for (CandidateResult* candidate : able) {
     candidate->on_front =
@@ -85,18 +104,18 @@ void find_front(std::vector<CandidateResult>& candidates, const std::vector<std:
 
 // By the first measure; what is equal there by the next ones, then by number.
 std::optional<std::size_t> find_best(const std::vector<CandidateResult>& candidates, const std::vector<std::size_t>& measures,
-                                     bool mapped) {
+                                     const std::vector<std::size_t>& drives, bool mapped) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CandidateResult& candidate = candidates[i];
-    if (!candidate.feasible() || !candidate.measured[measures.front()]) continue;
+    if (!candidate.feasible() || !comparable(candidate, measures.front(), drives)) continue;
     if (mapped && candidate.state != CandidateState::kMapped) continue;
     if (!best) {
       best = i;
       continue;
     }
     for (const std::size_t m : measures) {
-      if (!candidate.measured[m] || !candidates[*best].measured[m]) continue;
+      if (!comparable(candidate, m, drives) || !comparable(candidates[*best], m, drives)) continue;
       const double own = merit(candidate, m), other = merit(candidates[*best], m);
       if (own > other) best = i;
       if (own != other) break;
@@ -235,7 +254,7 @@ std::vector<std::string> broken_by_measures(const StudyConfig& study, const Stud
     const Condition condition = Condition::parse(text);
     const std::optional<std::size_t> m = study_measure(condition.name());
     if (!m || study_measures()[*m].source != source || condition.holds(means[*m])) continue;
-    broken.push_back(condition.text() + " does not hold: " + (means[*m] ? number_text(*means[*m]) : "it has no value"));
+    broken.push_back(condition.text() + " does not hold: " + (means[*m] ? number_text(*means[*m]) : "it has no value in every drive"));
   }
   return broken;
 }
@@ -257,23 +276,26 @@ StudyResults judged_study(const StudyConfig& study, std::vector<CandidateResult>
   for (CandidateResult& candidate : candidates) {
     measure(candidate, candidates.front(), study.judge.confidence);
     results.mapped = results.mapped || !candidate.runs.empty();
+  }
+  const std::vector<std::size_t> drives = drives_of_measures(candidates);
+  for (CandidateResult& candidate : candidates) {
     for (const StudyRunResult& run : candidate.runs) {
       if (!run.error.empty()) candidate.broken.push_back(run.hall + ", seed " + std::to_string(run.seed) + ": " + run.error);
     }
     if (candidate.runs.empty()) continue;
     StudyValues means(study_measures().size());
     for (std::size_t m = 0; m < means.size(); ++m) {
-      if (candidate.measured[m]) means[m] = candidate.measured[m]->mean;
+      if (comparable(candidate, m, drives)) means[m] = candidate.measured[m]->mean;
     }
     for (std::string& text : broken_by_measures(study, means, MeasureSource::kRun)) candidate.broken.push_back(std::move(text));
   }
   results.best_by = results.mapped ? study.judge.best_by : study.screen.by;
   results.pareto = study.judge.pareto;
   if (!results.mapped) results.pareto = {study.screen.by, study.screen.by == "floor_coverage" ? "object_coverage" : "floor_coverage"};
-  find_front(candidates, indices_of(results.pareto));
+  find_front(candidates, indices_of(results.pareto), drives, results.mapped);
   std::vector<std::size_t> order = {*study_measure(results.best_by)};
   for (const std::size_t m : indices_of(study.judge.measures)) order.push_back(m);
-  results.best = find_best(candidates, order, results.mapped);
+  results.best = find_best(candidates, order, drives, results.mapped);
   results.effects = effects_of(study, candidates);
   results.candidates = std::move(candidates);
   return results;

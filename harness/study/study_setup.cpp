@@ -29,6 +29,8 @@ StudyConfig read_with_settings(const StudyRequest& request) {
   }
   if (!own.empty()) apply_settings(own, [&](Fields& f) { f.group("study", study, ""); });
   if (request.seed) {
+    constexpr std::uint64_t kMost = 9'000'000'000'000'000;  // as study.seeds
+    if (*request.seed > kMost) throw Error("--seed " + std::to_string(*request.seed) + ": expected at most " + std::to_string(kMost));
     for (std::size_t i = 0; i < study.seeds.size(); ++i) study.seeds[i] = static_cast<double>(*request.seed + i);
   }
   return study;
@@ -52,9 +54,7 @@ class Halls {
     if (!hall) {
       hall = std::make_shared<SharedHall>();
       hall->scene = std::make_shared<const Scene>(build_scene(scenario));
-      Digest digest;
-      add_scene(*hall->scene, digest);
-      hall->digest = digest.hex();
+      hall->digest = digest_of(*hall->scene);
     }
     return hall;
   }
@@ -63,11 +63,40 @@ class Halls {
   std::map<std::string, std::shared_ptr<SharedHall>> known_;
 };
 
-// What every candidate of a hall begins with.
+// A hall's name and its scenario file.
 struct HallBase {
   std::string name;
   fs::path scenario;
 };
+
+std::string outline_of(const RobotConfig& robot) {
+  return number_text(robot.length_m) + " x " + number_text(robot.width_m) + " x " + number_text(robot.height_m);
+}
+
+std::string text_of(RunConfig config) {
+  return write_config([&](Fields& f) { config.visit(f); });
+}
+
+// Keys that would be set twice, of which one would do nothing.
+void check_keys(const StudyConfig& study, const std::vector<Setting>& given) {
+  std::set<std::string> varied;
+  for (const auto& [name, factor] : study.vary) {
+    for (const std::string& key : factor.also.empty() ? std::vector<std::string>{} : factor.also) {
+      if (!varied.insert(key).second) throw Error("vary." + name + ".also: '" + key + "' varies already; expected each key once");
+    }
+    if (!varied.insert(factor.key).second)
+      throw Error("vary." + name + ".key: '" + factor.key + "' varies already; expected each key once");
+  }
+  if (varied.contains("robot.model") && !study.vehicle_model.empty())
+    throw Error("vehicle_model: robot.model varies; expected one of them");
+  for (const std::string& text : study.run.set) {
+    if (parse_setting(text).key == "seed") throw Error("run.set: '" + text + "'; expected seeds under study.seeds");
+  }
+  for (const Setting& setting : given) {
+    if (setting.key == "seed") throw Error("--set seed: expected --seed, or study.seeds");
+    if (varied.contains(setting.key)) throw Error("--set " + setting.key + ": varies in this study; expected another key");
+  }
+}
 
 std::vector<Setting> settings_of(const StudyConfig& study, const DesignPoint& values) {
   std::vector<Setting> settings;
@@ -114,16 +143,26 @@ std::string name_of(int number) {
   return name;
 }
 
-// The factors' values where the study does not name the baseline's: those that the halls have.
-DesignPoint present_values(const StudyConfig& study, RunConfig config) {
+// The factors' values as the halls have them, "the hall's own" where these differ.
+DesignPoint present_values(const StudyConfig& study, const Candidate& candidate) {
   DesignPoint values;
   for (const auto& [name, factor] : study.vary) {
-    const std::optional<std::string> value = value_of(factor.key, [&](Fields& f) { config.visit(f); });
-    if (!value) throw Error("vary." + name + ".key: no such configuration key '" + factor.key + "'");
-    const std::optional<double> number = as_number(*value);
-    values.push_back(number ? number_text(*number) : *value);
+    std::set<std::string> found;
+    for (const CandidateInHall& in_hall : candidate.halls) {
+      RunConfig config = in_hall.config;
+      const std::optional<std::string> value = value_of(factor.key, [&](Fields& f) { config.visit(f); });
+      if (!value) throw Error("vary." + name + ".key: no such configuration key '" + factor.key + "'");
+      const std::optional<double> number = as_number(*value);
+      found.insert(number ? number_text(*number) : *value);
+    }
+    values.push_back(found.size() == 1 ? *found.begin() : "the hall's own");
   }
   return values;
+}
+
+bool same_everywhere(const Candidate& a, const Candidate& b) {
+  return std::equal(a.halls.begin(), a.halls.end(), b.halls.begin(), b.halls.end(),
+                    [](const CandidateInHall& x, const CandidateInHall& y) { return text_of(x.config) == text_of(y.config); });
 }
 
 }  // namespace
@@ -146,33 +185,28 @@ std::shared_ptr<const RayCaster> SharedHall::own_body() {
   return own_body_;
 }
 
-const CoverageHall& SharedHall::coverage(const RobotConfig& robot, const CoverageConfig& config) {
-  if (!coverage_) coverage_ = std::make_unique<CoverageHall>(caster(), robot, config);
-  return *coverage_;
+const CoverageHall& SharedHall::coverage(const RobotConfig& baseline_robot, const CoverageConfig& config) {
+  std::unique_ptr<CoverageHall>& made = coverage_[outline_of(baseline_robot)];
+  if (!made) made = std::make_unique<CoverageHall>(caster(), baseline_robot, config);
+  return *made;
 }
 
-std::string StudySetup::run_command(const Candidate& candidate) const {
-  const RunChoice& choice = study.run.choice;
-  const auto& [name, hall] = *study.halls.begin();
-  std::string command = "waretwin run " +
-                        (hall.scenario.empty() ? "HALL/scenario.yaml" : (file.parent_path() / hall.scenario).lexically_normal().string()) +
-                        " --out OUT --profile " + choice.profile;
-  const auto option = [&command](const std::string& option_name, const std::string& value) {
-    if (!value.empty()) command += " " + option_name + " " + value;
-  };
-  option("--detector", choice.detector.value_or(""));
-  option("--poses", choice.poses);
-  if (choice.depth != "sensor") option("--depth", choice.depth);
-  if (choice.association != "map") option("--association", choice.association);
-  if (choice.rate_hz) option("--rate", number_text(*choice.rate_hz));
-  if (!study.vehicle.empty()) option("--config", (file.parent_path() / study.vehicle).lexically_normal().string());
-  // Only a model beside the scenario can be named there.
-  const std::filesystem::path hall_folder = (file.parent_path() / hall.scenario).parent_path();
-  const std::filesystem::path model = (file.parent_path() / study.vehicle_model).lexically_relative(hall_folder);
-  if (!study.vehicle_model.empty() && !model.empty() && *model.begin() != "..") command += " --set robot.model=" + model.string();
-  for (const std::string& text : study.run.set) command += " --set " + text;
-  for (const Setting& setting : candidate.settings) command += " --set " + setting.key + "=" + setting.value;
-  return command;
+std::string StudySetup::run_config(const CandidateInHall& in_hall) const {
+  RunConfig config = in_hall.config;
+  config.scenario.seed = static_cast<std::uint64_t>(study.seeds.front());
+  config.truth_frames = {};
+  config.extras = {};
+  // A configuration names models from the scenario's folder.
+  std::string note;
+  if (config.scenario.robot.model.is_absolute()) {
+    const fs::path model =
+        config.scenario.robot.model.lexically_relative(fs::absolute(config.scenario.file).parent_path().lexically_normal());
+    const bool beside = !model.empty() && *model.begin() != "..";
+    if (!beside)
+      note = "# robot.model was " + config.scenario.robot.model.filename().string() + ", which is not in the scenario's folder\n";
+    config.scenario.robot.model = beside ? model : fs::path();
+  }
+  return note + resolved_config([&](Fields& f) { config.visit(f); }, "study " + study.name + ", hall " + in_hall.hall);
 }
 
 StudySetup set_up_study(const StudyRequest& request, const std::function<void()>& check) {
@@ -180,6 +214,12 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
   setup.file = request.file;
   setup.study = read_with_settings(request);
   const StudyConfig& study = setup.study;
+  check();
+  try {
+    check_keys(study, request.settings);
+  } catch (const Error& error) {
+    throw Error(request.file, error.what());
+  }
   const auto looked_at = [&](const std::string& who, const auto& act) {
     check();
     try {
@@ -198,37 +238,44 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
     });
   }
   Halls halls;
+  std::vector<RobotConfig> robots;  // of the baseline, by hall
   const auto complete = [&](Candidate& candidate) {
     candidate.settings = settings_of(study, candidate.values);
-    for (const HallBase& base : bases) {
-      looked_at("candidate " + candidate.name + " in hall '" + base.name + "'", [&] {
-        RunConfig config = configuration(study, request, base, candidate.settings);
+    for (std::size_t k = 0; k < bases.size(); ++k) {
+      looked_at("candidate " + candidate.name + " in hall '" + bases[k].name + "'", [&] {
+        RunConfig config = configuration(study, request, bases[k], candidate.settings);
         std::shared_ptr<SharedHall> shared = halls.of(config.scenario);
-        candidate.halls.push_back({base.name, std::move(config), std::move(shared)});
+        if (robots.size() == k) robots.push_back(config.scenario.robot);
+        candidate.halls.push_back({bases[k].name, std::move(config), std::move(shared), robots[k]});
       });
     }
   };
-  // The baseline has the values that the study names; of the others it has the hall's, which are read from its first one.
+  // The baseline has the values that the study names; of the others it has the halls'.
   Candidate baseline;
   baseline.name = name_of(0);
   for (const auto& entry : study.vary) baseline.values.push_back(entry.second.baseline);
   complete(baseline);
   looked_at("the baseline", [&] {
-    baseline.values = present_values(study, baseline.halls.front().config);
+    baseline.values = present_values(study, baseline);
     const RunConfig& config = baseline.halls.front().config;
     if (!config.truth_stages.detector) make_detector(config.mapper);  // throws where it cannot be
   });
   baseline.refused = broken_by_values(study, baseline.values).value_or("");
   setup.candidates.push_back(std::move(baseline));
-  for (const DesignPoint& point : design_points(study)) {
-    if (point == setup.candidates.front().values) continue;
+  std::vector<DesignPoint> points;
+  looked_at("the design", [&] { points = design_points(study); });
+  for (const DesignPoint& point : points) {
     Candidate candidate;
     candidate.number = static_cast<int>(setup.candidates.size());
     candidate.name = name_of(candidate.number);
     candidate.values = point;
     candidate.refused = broken_by_values(study, point).value_or("");
     candidate.settings = settings_of(study, point);
-    if (candidate.refused.empty()) complete(candidate);
+    if (candidate.refused.empty()) {
+      complete(candidate);
+      if (same_everywhere(candidate, setup.candidates.front())) continue;
+      candidate.values = present_values(study, candidate);  // as the configuration reads them: yes is true
+    }
     setup.candidates.push_back(std::move(candidate));
   }
   return setup;

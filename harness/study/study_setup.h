@@ -24,13 +24,13 @@ struct SharedHall {
   // Made when first asked for.
   std::shared_ptr<RayCaster> caster();
   std::shared_ptr<const RayCaster> own_body();
-  const CoverageHall& coverage(const RobotConfig& robot, const CoverageConfig& config);
+  const CoverageHall& coverage(const RobotConfig& baseline_robot, const CoverageConfig& config);
 
  private:
   std::shared_ptr<RayCaster> caster_;
   std::shared_ptr<const RayCaster> own_body_;
   bool own_body_made_ = false;
-  std::unique_ptr<CoverageHall> coverage_;
+  std::map<std::string, std::unique_ptr<CoverageHall>> coverage_;  // by the robot's size
 };
 
 // One candidate in one hall; the seed is still the scenario's.
@@ -38,6 +38,7 @@ struct CandidateInHall {
   std::string hall;
   RunConfig config;
   std::shared_ptr<SharedHall> shared;
+  RobotConfig baseline_robot;  // whose size says where a vehicle can stand: what is viewable is the same for every candidate
 };
 
 struct Candidate {
@@ -54,8 +55,8 @@ struct StudySetup {
   std::filesystem::path file;
   std::vector<Candidate> candidates;  // the baseline first
 
-  // As `waretwin run` takes it, for the first hall.
-  std::string run_command(const Candidate& candidate) const;
+  // A candidate's configuration as a run's config.yaml, with all that a run shows: `waretwin run SCENARIO --config` drives it.
+  std::string run_config(const CandidateInHall& in_hall) const;
 };
 
 struct StudyRequest;

@@ -146,8 +146,17 @@ std::string values_text(const StudyConfig& study, const DesignPoint& values) {
   return text;
 }
 
-std::string advantage_text(const StudyConfig& study, const StudyResults& results) {
-  if (!results.best) return "";
+std::string verdict_text(const StudyConfig& study, const StudyResults& results) {
+  if (!results.best) {
+    const std::size_t by = *study_measure(results.best_by);
+    const bool measured = std::any_of(results.candidates.begin(), results.candidates.end(),
+                                      [&](const CandidateResult& candidate) { return candidate.feasible() && candidate.measured[by]; });
+    const bool feasible = std::any_of(results.candidates.begin(), results.candidates.end(),
+                                      [](const CandidateResult& candidate) { return candidate.feasible(); });
+    if (!feasible) return "none: every candidate breaks a constraint, or could not be driven";
+    return measured ? "none: no candidate has " + results.best_by + " in every drive"
+                    : "none: no candidate has a value of " + results.best_by + " (a hall without true objects has none)";
+  }
   const CandidateResult& best = results.candidates[*results.best];
   const CandidateResult& baseline = results.candidates.front();
   const std::size_t by = *study_measure(results.best_by);
@@ -184,7 +193,7 @@ std::string study_json(const StudySetup& setup, const StudyResults& results, con
   json["confidence"] = study.judge.confidence;
   json["baseline"] = 0;
   json["best"] = results.best ? Json(results.candidates[*results.best].number) : Json(nullptr);
-  json["advantage"] = advantage_text(study, results);
+  json["verdict"] = verdict_text(study, results);
   json["halls"] = Json::array();
   for (const auto& entry : study.halls) json["halls"].push_back(entry.first);
   json["seeds"] = Json::array();
@@ -265,9 +274,9 @@ std::string study_markdown(const StudySetup& setup, const StudyResults& results)
           (study.halls.size() > 1 ? "s" : "") + ", " + std::to_string(study.seeds.size()) + " seed" + (study.seeds.size() > 1 ? "s" : "") +
           "; " + std::to_string(count(CandidateState::kMapped)) + " mapped, " + std::to_string(count(CandidateState::kScreenedOut)) +
           " looked at by coverage alone, " + std::to_string(count(CandidateState::kRefused)) + " refused by constraints.\n\n";
+  text += "**Best**: " + verdict_text(study, results) + ".\n\n";
   if (results.best) {
-    text += "**Best**: " + advantage_text(study, results) + ".\n\n    " +
-            setup.run_command(setup.candidates[static_cast<std::size_t>(results.candidates[*results.best].number)]) + "\n\n";
+    text += "`best/` has its configuration for each hall: `waretwin run SCENARIO --out OUT --config best/HALL.yaml` drives it.\n\n";
     const CandidateResult& best = results.candidates[*results.best];
     std::vector<std::vector<std::string>> rows = {{"measure", "baseline", "best", "difference"}};
     for (const std::size_t m : judged(study)) {
@@ -277,8 +286,6 @@ std::string study_markdown(const StudySetup& setup, const StudyResults& results)
       rows.push_back({study_measures()[m].name, mean(results.candidates.front()), mean(best), interval_text(best.difference[m])});
     }
     if (best.number != 0) text += markdown_table(rows, 1) + "\n";
-  } else {
-    text += "No candidate fulfils all constraints.\n\n";
   }
   std::vector<const CandidateResult*> front;
   for (const CandidateResult* candidate : ranked(results)) {

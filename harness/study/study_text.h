@@ -20,8 +20,8 @@ std::string runs_csv(const StudyConfig& study, const StudyResults& results);
 // For people: the best mount and its advantage, the front, the table, main effects.
 std::string study_markdown(const StudySetup& setup, const StudyResults& results);
 
-// "c012 (height 1.2, pitch 30) has mean_iou3d 0.97; the baseline c000 (..) 0.93: +0.04 (95 %: +0.01 to +0.06)"; empty without a best.
-std::string advantage_text(const StudyConfig& study, const StudyResults& results);
+// "c012 (height 1.2, pitch 30) has mean_iou3d 0.97; the baseline (..) 0.93: +0.04 (95 % ..: +0.01 to +0.06)", or why there is no best.
+std::string verdict_text(const StudyConfig& study, const StudyResults& results);
 
 // "height 1.2, pitch 30"
 std::string values_text(const StudyConfig& study, const DesignPoint& values);

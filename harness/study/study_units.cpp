@@ -22,6 +22,8 @@ std::string coverage_unit(const CandidateInHall& candidate, const CoverageConfig
   digest.add("coverage");
   digest.add(program_identity());
   digest.add(candidate.shared->digest);
+  for (const double size : {candidate.baseline_robot.length_m, candidate.baseline_robot.width_m, candidate.baseline_robot.height_m})
+    digest.add(size);
   digest.add(write_config([&](Fields& f) {
     f.group("robot", scenario.robot, "");
     f.group("sensors", scenario.sensors, "");
@@ -55,7 +57,7 @@ std::string run_unit(const RunConfig& config, const SharedHall& shared) {
   Digest digest;
   digest.add("study run");
   digest.add(program_identity());
-  add_run(config, *shared.scene, digest);
+  add_run(config, shared.digest, digest);
   return digest.hex();
 }
 

@@ -47,7 +47,7 @@ std::string unit_of(const ReadyRun& run, const SuiteConfig& suite, const std::st
   digest.add(run.name);
   digest.add(text_of(run.pass, suite.tolerances));
   digest.add(baseline_bytes);
-  add_run(run.config, scene, digest);
+  add_run(run.config, digest_of(scene), digest);
   return digest.hex();
 }
 

@@ -22,7 +22,7 @@ void add_detector(const RunConfig& config, Digest& digest) {
 
 }  // namespace
 
-void add_run(const RunConfig& config, const Scene& scene, Digest& digest) {
+void add_run(const RunConfig& config, const std::string& scene, Digest& digest) {
   RunConfig without_names = config;
   without_names.mapper.model.clear();
   without_names.mapper.boxes.clear();
@@ -30,7 +30,7 @@ void add_run(const RunConfig& config, const Scene& scene, Digest& digest) {
   without_names.resume.clear();
   without_names.scenario.robot.model.clear();  // what is in it stands in the scene
   digest.add(write_config([&](Fields& f) { without_names.visit(f); }));
-  add_scene(scene, digest);
+  digest.add(scene);
   add_detector(config, digest);
   if (!config.resume.empty()) digest.add(read_file(config.resume));
 }

@@ -144,6 +144,12 @@ void add_scene(const Scene& scene, Digest& digest) {
   digest.add(scene.vehicle);
 }
 
+std::string digest_of(const Scene& scene) {
+  Digest digest;
+  add_scene(scene, digest);
+  return digest.hex();
+}
+
 UnitStore::UnitStore(const std::filesystem::path& folder) : folder_(folder) { make_folder(folder); }
 
 std::filesystem::path UnitStore::file(const std::string& name) const { return folder_ / (name + ".json"); }

@@ -29,6 +29,7 @@ std::string cpu_identity();
 
 // Adds what the models became, whatever files they came from: all that rays meet, and the true objects.
 void add_scene(const Scene& scene, Digest& digest);
+std::string digest_of(const Scene& scene);
 
 class UnitStore {
  public:

@@ -40,7 +40,7 @@ TEST_F(Studies, SaysWhichMountIsBest) {
   const ProgramResult result = study("out");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("best: c00"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("waretwin run HALL/scenario.yaml --out OUT --profile best --detector truth"), std::string::npos) << result.out;
+  EXPECT_TRUE(fs::exists(path("out/best/room.yaml")));
   const ProgramResult again = study("out");
   EXPECT_NE(again.out.find("6 runs were there already"), std::string::npos) << again.out;
 }
@@ -48,9 +48,11 @@ TEST_F(Studies, SaysWhichMountIsBest) {
 TEST_F(Studies, ProcessesSideBySideMakeTheSameBytes) {
   ASSERT_EQ(study("whole").exit_code, 0);
   // Overlapping on purpose: the second does all, the first its half.
-  std::thread first([&] { study("parts", "--shard 0/2 --threads 1"); });
+  ProgramResult first;
+  std::thread other([&] { first = study("parts", "--shard 0/2 --threads 1"); });
   const ProgramResult second = study("parts", "--threads 1");
-  first.join();
+  other.join();
+  EXPECT_EQ(first.exit_code, 0) << first.err;
   EXPECT_EQ(second.exit_code, 0) << second.err;
   EXPECT_EQ(study("parts", "--merge").exit_code, 0);
   for (const char* name : {"results.json", "results.csv", "runs.csv", "study.md"})

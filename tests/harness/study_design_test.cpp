@@ -32,6 +32,15 @@ TEST(StudyDesign, AGridHasEveryCombinationTheFirstFactorSlowest) {
   EXPECT_EQ(points, expected);
 }
 
+TEST(StudyDesign, RangesAreRoundedByTheirSize) {
+  const auto small = design_points(study_of("  design: sobol\n  points: 40\n  vary: {s: {key: a.s, from: 0.0014, to: 0.002}}\n"));
+  EXPECT_EQ(small.size(), 40u);
+  for (const DesignPoint& point : small) EXPECT_TRUE(*as_number(point[0]) >= 0.0014 && *as_number(point[0]) <= 0.002) << point[0];
+  const auto whole = design_points(study_of("  vary: {b: {key: a.b, from: 100000, to: 300000, steps: 3, multiple_of: 1}}\n"));
+  const std::vector<DesignPoint> expected = {{"100000"}, {"200000"}, {"300000"}};
+  EXPECT_EQ(whole, expected);
+}
+
 TEST(StudyDesign, AListPairsValuesAndKnowsRepetitions) {
   const auto points =
       design_points(study_of("  design: list\n  vary: {h: {key: a.h, values: [1, 1.50, 1.0]}, p: {key: a.p, values: [30, 40, 30]}}\n"));
@@ -72,6 +81,9 @@ TEST(StudyDesign, FilesThatSayTooLittleOrTheWrongThing) {
   EXPECT_ERROR(study_of("  vary: {h: {key: a.h}}\n"), "values", "expected either values, or from and to");
   EXPECT_ERROR(study_of("  vary: {h: {key: a.h, from: 2, to: 1}}\n"), "expected from < to");
   EXPECT_ERROR(study_of("  vary: {h: {key: a.h, from: 2}}\n"), "expected from and to");
+  EXPECT_ERROR(study_of("  vary: {h: {key: seed, values: [1, 2]}}\n"), "seeds under `seeds`");
+  EXPECT_ERROR(study_of("  vary: {state: {key: a.h, values: [1, 2]}}\n"), "is a column");
+  EXPECT_ERROR(study_of("  vary: {m: {key: a.m, values: [nfov, wfov]}}\n  constraints: [m < 2]\n"), "has words for values");
   EXPECT_ERROR(study_of("  vary: {recall: {key: a.h, values: [1]}}\n"), "is a measure's name");
   EXPECT_ERROR(study_of("  vary: {'a b': {key: a.h, values: [1]}}\n"), "letters, digits");
   EXPECT_ERROR(study_of("  design: list\n  vary: {h: {key: a.h, values: [1, 2]}, p: {key: a.p, values: [1]}}\n"), "side by side");

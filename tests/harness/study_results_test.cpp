@@ -113,6 +113,35 @@ TEST(StudyResults, ADriveThatOneOfThemLacksIsNotPaired) {
   EXPECT_EQ(results.best, 0u);
 }
 
+TEST(StudyResults, WhoHasNoValueWhereOthersHaveOneIsNotBetter) {
+  StudyConfig study = two_factors();
+  study.judge.best_by = "mean_e_trans_m";
+  study.judge.pareto = {"mean_e_trans_m", "floor_coverage"};
+  study.constraints = {"mean_e_trans_m < 0.05"};
+  const auto with = [](int number, std::initializer_list<double> errors) {
+    CandidateResult one = candidate(number, {std::to_string(number), "45"}, 0.7, {0.5, 0.5});
+    std::size_t k = 0;
+    for (const double error : errors) one.runs[k++].values[*study_measure("mean_e_trans_m")] = error;
+    return one;
+  };
+  const StudyResults results = judged_study(study, {with(0, {0.03, 0.04}), with(1, {0.001})});
+  EXPECT_EQ(results.best, 0u);
+  EXPECT_FALSE(results.candidates[1].on_front);
+  EXPECT_EQ(results.candidates[1].broken, std::vector<std::string>{"mean_e_trans_m < 0.05 does not hold: it has no value in every drive"});
+}
+
+TEST(StudyResults, WhatWasNotDrivenIsNotOnAFrontOfWhatWas) {
+  StudyConfig study = two_factors();
+  study.judge.pareto = {"floor_coverage", "blind_floor"};
+  CandidateResult seen = candidate(1, {"1", "45"}, 0.99, {});
+  seen.state = CandidateState::kScreenedOut;
+  CandidateResult driven = candidate(0, {"1.4", "45"}, 0.7, {0.9});
+  for (CandidateResult* one : {&seen, &driven}) one->halls["hall"][*study_measure("blind_floor")] = 0.5;
+  const StudyResults results = judged_study(study, {driven, seen});
+  EXPECT_TRUE(results.candidates[0].on_front);
+  EXPECT_FALSE(results.candidates[1].on_front);
+}
+
 TEST(StudyResults, TheFrontIsWhatNothingDominates) {
   std::vector<CandidateResult> candidates;
   Dice dice(RandomStream(5, "test", "front"));

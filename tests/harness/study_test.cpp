@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/run/closed_loop.h"
 #include "harness/study/preview.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
@@ -110,6 +111,7 @@ TEST_F(Study, WhatIsDoneIsNotDoneAgain) {
 
 TEST_F(Study, AStopLosesNothingThatWasDone) {
   StudyRequest stopped = request(small(), "out");
+  stopped.jobs = 1;
   int drives = 0;
   StudyHooks hooks;
   std::string last;
@@ -126,6 +128,26 @@ TEST_F(Study, AStopLosesNothingThatWasDone) {
   EXPECT_EQ(results("out"), results("whole"));
 }
 
+TEST_F(Study, DrivesSideBySideMakeTheSameBytes) {
+  StudyRequest one = request(small(), "one"), many = request(small(), "many");
+  one.jobs = 1;
+  many.jobs = 3;
+  run_study(one);
+  run_study(many);
+  EXPECT_EQ(results("one"), results("many"));
+  // A stop is heard by all of them.
+  StudyRequest stopped = request(small(), "stopped");
+  stopped.jobs = 3;
+  StudyHooks hooks;
+  hooks.progress = [](const StudyProgress& now) {
+    if (now.stage == "runs" && now.share > 0.4) throw Error("stopped");
+  };
+  EXPECT_ERROR(run_study(stopped, hooks), "stopped");
+  EXPECT_FALSE(fs::exists(path("stopped/results.json")));
+  run_study(request(small(), "stopped"));
+  EXPECT_EQ(results("one"), results("stopped"));
+}
+
 TEST_F(Study, ScreeningMapsTheBestByCoverageAlone) {
   const StudySummary summary = run(small("  screen: {keep: 1, by: floor_coverage}\n"), "out");
   ASSERT_TRUE(summary.results);
@@ -139,6 +161,69 @@ TEST_F(Study, ScreeningMapsTheBestByCoverageAlone) {
   EXPECT_FALSE(candidates[3 - better].measured[*study_measure("precision")]);
 }
 
+TEST_F(Study, WhatDiffersInTheMapperAloneSeesTheSame) {
+  StudyRequest rates = request(small(), "out");
+  rates.settings = {{"study.vary.pitch.key", "mapper.integrate.voxel_m"}, {"study.vary.pitch.values", "[0.02, 0.03, 0.05, 0.08]"}};
+  rates.coverage_only = true;
+  const StudySummary summary = run_study(rates);
+  ASSERT_TRUE(summary.results);
+  const std::size_t floor = *study_measure("floor_coverage");
+  const auto& candidates = summary.results->candidates;
+  ASSERT_EQ(candidates.size(), 9u);
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_EQ(candidates[i].measured[floor]->mean, candidates[1].measured[floor]->mean);
+  std::size_t units = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(path("out/units"))) ++units;
+  EXPECT_EQ(units, 2u);  // the baseline's and that of the one height that is not refused
+}
+
+TEST_F(Study, WhatIsViewableIsTheSameForRobotsOfAllSizes) {
+  StudyRequest sizes = request(small(), "out");
+  sizes.settings = {{"study.vary.pitch.key", "robot.width_m"}, {"study.vary.pitch.values", "[0.3, 0.6, 1.5]"}};
+  sizes.coverage_only = true;
+  StudyRequest part = sizes;
+  part.out = path("parts");
+  part.shard = {1, 2};
+  run_study(sizes);
+  run_study(part);  // another candidate comes first
+  EXPECT_EQ(read_file(path("out/screening/results.json")), read_file(path("parts/screening/results.json")));
+}
+
+TEST_F(Study, TheBaselineIsNotDrivenTwice) {
+  // 1.40 is 1.4; but where another key goes along it is another candidate.
+  StudyRequest again = request(small(), "out");
+  again.settings = {{"study.vary.height.values", "[1.40]"}, {"study.vary.pitch.values", "[45.0]"}};
+  again.coverage_only = true;
+  EXPECT_EQ(run_study(again).results->candidates.size(), 1u);
+  again.settings.push_back({"study.vary.pitch.also", "[sensors.cameras.camera.mount.roll_deg]"});
+  EXPECT_EQ(run_study(again).results->candidates.size(), 2u);
+}
+
+TEST_F(Study, WhatIsThereOutlivesWhatCannotBeDone) {
+  run(small(), "out");
+  const std::string before = results("out");
+  StudyRequest merge = request(small(), "out");
+  merge.merge_only = true;
+  merge.settings = {{"study.seeds", "[1, 2, 3]"}};
+  EXPECT_FALSE(run_study(merge).results);
+  StudyRequest look = request(small(), "out");
+  look.coverage_only = true;
+  run_study(look);
+  EXPECT_EQ(results("out"), before);
+}
+
+TEST_F(Study, TheBestCanBeDrivenAgain) {
+  const StudySummary summary = run(small(), "out");
+  ASSERT_TRUE(summary.results && summary.results->best);
+  const CandidateResult& best = summary.results->candidates[*summary.results->best];
+  fs::path hall;
+  for (const auto& entry : fs::directory_iterator(path("out/halls"))) hall = entry.path();
+  const RunConfig config = load_run_config(hall / "scenario.yaml", RunConfig(), path("out/best/room.yaml"), {});
+  EXPECT_EQ(config.scenario.seed, 1u);
+  EXPECT_TRUE(config.extras.pictures);
+  const auto scene = std::make_shared<const Scene>(build_scene(config.scenario));
+  EXPECT_EQ(run_closed_loop(config, scene).score.digest, best.runs.at(0).digest);
+}
+
 TEST_F(Study, CoverageAloneMapsNothing) {
   StudyRequest look = request(small(), "out");
   look.coverage_only = true;
@@ -146,7 +231,8 @@ TEST_F(Study, CoverageAloneMapsNothing) {
   ASSERT_TRUE(summary.results && summary.results->best);
   EXPECT_EQ(summary.runs, 0);
   EXPECT_EQ(summary.results->best_by, "object_coverage");
-  EXPECT_TRUE(fs::exists(path("out/plots/pareto.png")));
+  EXPECT_EQ(summary.folder, path("out/screening"));
+  EXPECT_TRUE(fs::exists(path("out/screening/plots/pareto.png")));
 }
 
 TEST_F(Study, ADriveThatCannotBeStandsWithItsCandidate) {
@@ -163,13 +249,19 @@ TEST_F(Study, ADriveThatCannotBeStandsWithItsCandidate) {
 
 TEST_F(Study, WhatIsWrongIsSaidBeforeAnythingIsDriven) {
   EXPECT_ERROR(run(small("  vehicle: none.yaml\n"), "out"), "none.yaml");
-  EXPECT_ERROR(run("study:\n  halls: {a: {scenario: none.yaml}}\n  vary: {h: {key: seed, values: [1]}}\n", "out"), "study.yaml",
+  EXPECT_ERROR(run("study:\n  halls: {a: {scenario: none.yaml}}\n  vary: {h: {key: mapper.rate_hz, values: [1]}}\n", "out"), "study.yaml",
                "none.yaml");
   StudyRequest wrong = request(small(), "out");
   wrong.settings = {{"study.vary.height.key", "sensors.cameras.camera.mount.zm"}};
   EXPECT_ERROR(run_study(wrong), "study.yaml", "vary.height.key", "zm");
   wrong.settings = {{"study.vary.pitch.values", "[30, steep]"}};
   EXPECT_ERROR(run_study(wrong), "candidate c00", "steep");
+  wrong.settings = {{"study.vary.pitch.key", "sensors.cameras.camera.mount.z_m"}};
+  EXPECT_ERROR(run_study(wrong), "varies already");
+  wrong.settings = {{"sensors.cameras.camera.mount.z_m", "1"}};
+  EXPECT_ERROR(run_study(wrong), "varies in this study");
+  wrong.settings = {{"seed", "1"}};
+  EXPECT_ERROR(run_study(wrong), "expected --seed");
   wrong.settings = {{"study.colour", "1"}};
   EXPECT_ERROR(run_study(wrong), "study.colour");
   EXPECT_FALSE(fs::exists(path("out/units")));

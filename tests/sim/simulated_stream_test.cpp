@@ -213,7 +213,8 @@ TEST(SimulatedStream, TheVehicleStandsInItsSensorsView) {
   for (const SensorEvent& event : events) {
     const auto* scan = std::get_if<LaserScan>(&event);
     if (scan == nullptr) continue;
-    for (const float range : scan->ranges) EXPECT_LT(range, 1.3f);  // it looks out of the inside of a box
+    // It looks out of the inside of a box.
+    for (const float range : scan->ranges) EXPECT_TRUE(range > 0.0f && range < 1.3f) << range;
   }
 }
 
