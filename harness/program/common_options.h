@@ -47,5 +47,6 @@ Command add_dataset_command(CLI::App& program);
 Command add_detect_command(CLI::App& program);
 Command add_train_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
+Command add_report_command(CLI::App& program);
 
 }  // namespace waretwin
