@@ -27,7 +27,7 @@ int report(const ReportOptions& options) {
   if (!options.video.empty()) {
     if (kind != ReportKind::kRun) throw Error("--video: " + options.folder + " is of no drive; expected the folder of a run or a map");
     Progress progress("video", options.common.quiet);
-    const VideoSummary video = write_drive_video(options.folder, options.video, [&](double done) { progress.update(done, ""); });
+    const VideoSummary video = write_drive_video(options.folder, options.video, [&](double done) { progress.update(done, "drawn"); });
     std::printf("%d frames, %d x %d, %s, in ", video.frames, video.width, video.height, video.codec.c_str());
     std::cout << options.video << "\n";
   }

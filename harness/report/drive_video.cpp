@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #ifdef WARETWIN_VIDEO
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
 #endif
 
@@ -172,8 +173,8 @@ cv::Mat picture_of(const LoggedFrame& frame) {
 cv::Mat words_of(const LoggedFrame& frame, Stamp start) {
   cv::Mat strip(kHeight - kPictureHeight, kHalf, CV_8UC3, cv::Scalar(kGround[0], kGround[1], kGround[2]));
   char text[160];
-  std::snprintf(text, sizeof text, "%.1f s    frame %d    %zu objects in the map", to_seconds(frame.stamp - start), frame.number,
-                frame.objects.size());
+  std::snprintf(text, sizeof text, "%.1f s    frame %d    %zu object%s in the map", to_seconds(frame.stamp - start), frame.number,
+                frame.objects.size(), frame.objects.size() == 1 ? "" : "s");
   write(strip, {20, 34}, text, kInk, 0.6);
   // Two columns; what does not fit is counted.
   constexpr std::size_t kRows = 5, kMost = 2 * kRows;
@@ -194,10 +195,15 @@ cv::Mat words_of(const LoggedFrame& frame, Stamp start) {
 
 // What the page says "H.264" for plays in every browser; MPEG-4 part 2 in most players.
 std::string open_writer(cv::VideoWriter& writer, const fs::path& file) {
+  // OpenCV tells of every encoder that it lacks; what matters is whether one is left.
+  struct Silence {
+    cv::utils::logging::LogLevel before = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    ~Silence() { cv::utils::logging::setLogLevel(before); }
+  } silence;
   const cv::Size size(kWidth, kHeight);
   if (writer.open(file.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('a', 'v', 'c', '1'), kRate, size)) return "H.264";
   if (writer.open(file.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), kRate, size)) return "MPEG-4";
-  throw Error(file, "cannot be written as a video: OpenCV has no encoder for H.264 or MPEG-4, or the folder cannot be written");
+  throw Error("--video: OpenCV has no encoder for H.264 or MPEG-4, or its file cannot be written");
 }
 
 }  // namespace
@@ -206,6 +212,9 @@ bool video_available() { return true; }
 
 VideoSummary write_drive_video(const fs::path& folder, const fs::path& file, const std::function<void(double)>& progress) {
   if (file.extension() != ".mp4") throw Error("--video " + file.string() + ": expected a name that ends in .mp4");
+  std::error_code error;
+  if (file.has_parent_path() && !fs::is_directory(file.parent_path(), error))
+    throw Error(file, "cannot be written: its folder does not exist");
   const std::vector<LoggedFrame> frames = read_frame_log(folder);
   if (frames.empty())
     throw Error(folder / "frames.jsonl", "is missing or empty: this drive kept no frames; expected a run or map of this version");

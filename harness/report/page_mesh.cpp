@@ -46,6 +46,7 @@ PageMesh clustered(const PageMesh& mesh, float cell_m) {
   struct Sum {
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
     std::array<std::uint64_t, 3> colour{};
+    double error = 0.0;
     std::uint64_t count = 0;
   };
   std::unordered_map<Cell, std::uint32_t, CellHash> cells;
@@ -65,6 +66,7 @@ PageMesh clustered(const PageMesh& mesh, float cell_m) {
     Sum& sum = sums[entry->second];
     sum.p += p.cast<double>();
     for (std::size_t c = 0; c < 3; ++c) sum.colour[c] += mesh.colours[i][c];
+    if (!mesh.errors.empty()) sum.error += static_cast<double>(mesh.errors[i]);
     ++sum.count;
   }
   for (const Sum& sum : sums) {
@@ -72,6 +74,7 @@ PageMesh clustered(const PageMesh& mesh, float cell_m) {
     std::array<std::uint8_t, 3> colour{};
     for (std::size_t c = 0; c < 3; ++c) colour[c] = static_cast<std::uint8_t>((sum.colour[c] + sum.count / 2) / sum.count);
     result.colours.push_back(colour);
+    if (!mesh.errors.empty()) result.errors.push_back(static_cast<float>(sum.error / static_cast<double>(sum.count)));
   }
   std::unordered_map<std::array<std::uint32_t, 3>, bool, TriangleHash> known;
   for (const auto& triangle : mesh.triangles) {
@@ -137,6 +140,8 @@ PackedMesh packed(const PageMesh& mesh) {
     append(result.colours, mesh.colours[i]);
     const auto label = std::lower_bound(result.label_ids.begin(), result.label_ids.end(), mesh.labels[i]);
     append(result.labels, static_cast<std::uint16_t>(label - result.label_ids.begin()));
+    if (!mesh.errors.empty())
+      append(result.errors, static_cast<std::uint8_t>(std::clamp(std::round(mesh.errors[i] / kErrorStep), 0.0f, 255.0f)));
   }
   const bool small = mesh.vertices.size() <= 65536;
   for (const auto& t : mesh.triangles) {

@@ -18,10 +18,16 @@ struct PageMesh {
   std::vector<std::array<std::uint8_t, 3>> colours;  // red, green, blue; one a vertex
   std::vector<std::int32_t> labels;                  // map id of each vertex, 0 = background
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<float> errors;  // distance of each vertex to the true surface, metres; empty where that is not known
 };
 
-// map.ply with the object ids of cloud.ply, as waretwin writes both. Throws Error naming the file where one is missing or is not that.
+// map.ply with the object ids of cloud.ply and, where there is one, the errors of surface_error.ply, as waretwin writes them. The black
+// surface of a drive without colour comes back grey. Throws Error naming the file where one is missing or is not that.
 PageMesh read_page_mesh(const std::filesystem::path& folder);
+
+// surface_error.ply in a run's folder: a binary PLY point cloud of x, y, z, error (metres).
+void write_surface_errors(const std::filesystem::path& folder, const std::vector<Eigen::Vector3f>& vertices,
+                          const std::vector<float>& errors);
 
 // At most `max_triangles` triangles: vertices of one label in one cell become one, at their mean, with their mean colour; cells are made
 // larger until the triangles are few enough. Triangles that fall together to a line or onto another are left out. A mesh that is
@@ -36,8 +42,11 @@ struct PackedMesh {
   std::string colours;                            // 3 uint8 a vertex
   std::string labels;                             // a uint16 a vertex, into label_ids
   std::vector<std::int32_t> label_ids;            // ascending
+  std::string errors;                             // a uint8 a vertex, in steps of kErrorStep, at most 255; empty where not known
   std::string indices;                            // 3 a triangle, uint16 up to 65536 vertices, else uint32
 };
+
+inline constexpr float kErrorStep = 0.0005f;  // metres
 
 // Throws Error for more than 65536 labels.
 PackedMesh packed(const PageMesh& mesh);

@@ -1,4 +1,5 @@
 // Reading the PLY files of a run's folder (mapper/output/mesh_files.cpp writes them).
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <sstream>
@@ -61,7 +62,34 @@ void expect_possible(const std::filesystem::path& file, const PlyHeader& header,
   if (header.vertices > bytes || header.faces > bytes) throw Error(file, "names more vertices or faces than it can hold");
 }
 
+void read_errors(const std::filesystem::path& file, PageMesh& mesh) {
+  const std::string bytes = read_file(file);
+  const PlyHeader header = read_header(file, bytes);
+  if (header.properties != "x y z error" || header.vertices != mesh.vertices.size())
+    throw Error(file, "does not hold the errors of map.ply's vertices; expected files of one run");
+  expect_size(file, header.size + 16 * header.vertices, bytes.size());
+  const char* at = bytes.data() + header.size;
+  for (std::size_t i = 0; i < header.vertices; ++i) {
+    at += 3 * sizeof(float);
+    mesh.errors.push_back(take<float>(at));
+    if (!(mesh.errors.back() >= 0.0f)) throw Error(file, "error " + std::to_string(i) + " is not a distance");
+  }
+}
+
 }  // namespace
+
+void write_surface_errors(const std::filesystem::path& folder, const std::vector<Eigen::Vector3f>& vertices,
+                          const std::vector<float>& errors) {
+  WARETWIN_CHECK(vertices.size() == errors.size(), "an error a vertex");
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices.size()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nproperty float error\nend_header\n";
+  bytes.reserve(bytes.size() + 16 * vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::array<float, 4> row = {vertices[i].x(), vertices[i].y(), vertices[i].z(), errors[i]};
+    bytes.append(reinterpret_cast<const char*>(row.data()), sizeof row);
+  }
+  write_file(folder / "surface_error.ply", bytes);
+}
 
 PageMesh read_page_mesh(const std::filesystem::path& folder) {
   PageMesh mesh;
@@ -106,6 +134,10 @@ PageMesh read_page_mesh(const std::filesystem::path& folder) {
     at += 15;
     mesh.labels.push_back(take<std::int32_t>(at));
   }
+  const auto is_black = [](const std::array<std::uint8_t, 3>& c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; };
+  if (std::all_of(mesh.colours.begin(), mesh.colours.end(), is_black)) mesh.colours.assign(mesh.colours.size(), {178, 182, 186});
+  std::error_code error;
+  if (std::filesystem::is_regular_file(folder / "surface_error.ply", error)) read_errors(folder / "surface_error.ply", mesh);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #include "harness/report/run_facts.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 namespace waretwin {
@@ -68,9 +69,13 @@ void add_run_facts(Json& page, const Json& score) {
 }
 
 void add_map_facts(Json& page, const Json& map) {
-  page["title"] = "map of " + map.value("source", "a recording");
+  const std::string source = map.value("source", "a recording");
+  // A folder may be named with a slash at its end.
+  const std::filesystem::path whole = source.ends_with('/') ? source.substr(0, source.size() - 1) : source;
+  page["title"] = "map of " + whole.filename().string();
   page["subtitle"] = "profile " + map.value("profile", "?") + ", digest " + map.value("digest", "?");
   Json& facts = page["facts"];
+  facts.push_back("Recording: " + source);
   const Json frames = get(map, "frames");
   if (frames.is_object()) {
     facts.push_back(count(frames, "seen") + " camera frames, " + count(frames, "mapped") + " mapped, " + count(frames, "without_pose") +

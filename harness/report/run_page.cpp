@@ -29,11 +29,12 @@ constexpr std::size_t kMaxTriangles = 200'000;
 constexpr std::size_t kMaxPoses = 1500, kMaxTimingRows = 1200;
 constexpr int kPictureWidth = 1100, kPictureQuality = 85;
 
-const std::array<const char*, 24> kFiles = {
-    "score.json",       "table6.md",  "budget.md",    "baseline.md",        "cuboids.json",         "truth.json",
-    "map.json",         "map.glb",    "map.ply",      "cloud.ply",          "map.waretwin",         "occupancy.pgm",
-    "occupancy.yaml",   "esdf.nrrd",  "octomap.bt",   "trajectory.tum",     "trajectory_truth.tum", "trajectory_covariance.csv",
-    "detections.jsonl", "timing.csv", "frames.jsonl", "truth_frames.jsonl", "topdown.png",          "config.yaml"};
+const std::array<const char*, 25> kFiles = {
+    "score.json",       "table6.md",  "budget.md",         "baseline.md",    "cuboids.json",         "truth.json",
+    "map.json",         "map.glb",    "map.ply",           "cloud.ply",      "map.waretwin",         "occupancy.pgm",
+    "occupancy.yaml",   "esdf.nrrd",  "octomap.bt",        "trajectory.tum", "trajectory_truth.tum", "trajectory_covariance.csv",
+    "detections.jsonl", "timing.csv", "surface_error.ply", "frames.jsonl",   "truth_frames.jsonl",   "topdown.png",
+    "config.yaml"};
 
 bool has(const fs::path& file) {
   std::error_code error;
@@ -195,11 +196,13 @@ void add_mesh(PageData& page, const fs::path& folder, const Pose& X_UR, const st
                        {"step", bytes.step},
                        {"label_ids", bytes.label_ids},
                        {"floor", rounded(static_cast<double>(*low), 3)},
-                       {"seen", !cameras.empty()}};
+                       {"seen", !cameras.empty()},
+                       {"error_step", bytes.errors.empty() ? Json(nullptr) : Json(rounded(static_cast<double>(kErrorStep), 6))}};
   page.blocks["mesh.positions"] = bytes.positions;
   page.blocks["mesh.colours"] = bytes.colours;
   page.blocks["mesh.labels"] = bytes.labels;
   page.blocks["mesh.indices"] = bytes.indices;
+  if (!bytes.errors.empty()) page.blocks["mesh.errors"] = bytes.errors;
   if (!cameras.empty()) {
     const std::vector<std::uint8_t> seen = first_seen(mesh, cameras);
     page.blocks["mesh.seen"] = std::string(seen.begin(), seen.end());

@@ -18,8 +18,8 @@ namespace waretwin {
 //   path_error: [[t_s, metres, degrees]] between the two, as they are
 //   timing: {stages: [{stage, mean, median, p95, max}], frames: [[t_s, localise, detect, segment, associate, integrate]]} in ms
 //   frames: [{frame, t_s, sensor, size, intrinsics, X_WC, X_WB, detections, objects, colour, depth}] (frame_log.h); colour, depth: blocks
-//   mesh: {vertices, triangles, of_triangles, low, step, label_ids, ceiling}; blocks mesh.positions, .colours, .labels, .indices, .seen
-//   (the number of the frame that saw the vertex first) pictures: [{caption, block}]
+//   mesh: {vertices, triangles, of_triangles, low, step, label_ids, floor, seen, error_step}; blocks mesh.positions, .colours, .labels,
+//   .indices, .errors, .seen (the number of the frame that saw the vertex first) pictures: [{caption, block}]
 PageData run_page(const std::filesystem::path& folder, const std::string& score = {});
 
 }  // namespace waretwin

@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/version.h"
 #include "harness/pictures/picture_file.h"
+#include "harness/report/page_mesh.h"
 #include "harness/report/report_file.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
@@ -128,7 +129,8 @@ void write_trajectory(RunFolder& folder, const ObjectMap& map, const Pose& X_BF)
   if (!covariances.empty()) folder.write("trajectory_covariance.csv", covariances);
 }
 
-void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output) {
+void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output,
+               const std::vector<float>& surface_errors_m) {
   const ObjectMap& map = mapping.map;
   WARETWIN_CHECK(map.volume != nullptr, "a map has a volume");
   const bool upright = map.X_RW.isApprox(Pose::Identity(), 1e-12);
@@ -141,6 +143,8 @@ void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, 
     make_folder(folder.path() / "objects");
     write_object_plys(folder.path() / "objects", mesh_R, objects);
     write_cloud_ply(folder.file("cloud.ply"), mesh_R);
+    folder.remove("surface_error.ply");
+    if (!surface_errors_m.empty()) write_surface_errors(folder.path(), mesh_R.vertices, surface_errors_m);
   }
   if (!upright) folder.write("upright.json", upright_json(map.X_RW));
   write_map_glb(folder.file("map.glb"), mesh, objects);
@@ -173,7 +177,8 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const 
   scene.truth = result.truth;
   scene.trajectory = result.trajectory;
   scene.true_trajectory = result.true_trajectory;
-  write_map(folder, result.mapping, std::move(scene), output);
+  static const std::vector<float> kUnknown;
+  write_map(folder, result.mapping, std::move(scene), output, score.surface ? score.surface->distances_m : kUnknown);
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
   for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md", "map.json"}) folder.remove(earlier);
@@ -207,7 +212,7 @@ std::string map_json(const MappingResult& mapping, const std::string& source, co
 
 void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
   for (const char* name : {"cuboids.json", "map.glb", "map.ply", "cloud.ply", "map.waretwin", "occupancy.pgm", "occupancy.yaml",
-                           "esdf.nrrd", "timing.csv", "frames.jsonl", "mesh.png", kOctomap})
+                           "esdf.nrrd", "timing.csv", "frames.jsonl", "mesh.png", "surface_error.ply", kOctomap})
     folder.remove(name);
   write_trajectory(folder, mapping.map, *mapping.X_BL);
   MapScene scene;

@@ -34,7 +34,9 @@ class RunFolder {
 // All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, frames, pictures of `scene`, which gets the mesh of the
 // map. Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy,
 // octomap.bt and map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.
-void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output);
+// surface_error.ply holds `surface_errors_m` (one a vertex of the mesh) beside the vertices, where they are known.
+void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output,
+               const std::vector<float>& surface_errors_m = {});
 
 // The same with truth, Table 6, report.html, and score.json at the very end.
 void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const OutputConfig& output);

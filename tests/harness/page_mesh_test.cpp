@@ -132,6 +132,15 @@ TEST(PageMeshFile, ReadsWhatARunWrites) {
   EXPECT_EQ(read.colours, mesh.colours);
   EXPECT_EQ(read.labels, mesh.labels);
   EXPECT_EQ(read.triangles, mesh.triangles);
+  EXPECT_TRUE(read.errors.empty());
+  write_surface_errors(folder.path(), mesh.vertices, {0.0f, 0.0101f, 1.0f});
+  const PageMesh with_errors = read_page_mesh(folder.path());
+  EXPECT_EQ(with_errors.errors, (std::vector<float>{0.0f, 0.0101f, 1.0f}));
+  EXPECT_EQ(packed(with_errors).errors, std::string("\0\x14\xff", 3)) << "in half millimetres";
+
+  mesh.colours.assign(3, {0, 0, 0});
+  write_ply(folder.path() / "map.ply", mesh);
+  EXPECT_GT(read_page_mesh(folder.path()).colours[0][0], 100) << "black is no colour to see a surface in";
 }
 
 TEST(PageMeshFile, RefusesWhatIsDamaged) {

@@ -172,7 +172,7 @@ TEST(RunPage, OfAMapHasNoTruth) {
   write_small_run(folder.path());
   for (const char* name : {"score.json", "truth.json", "trajectory_truth.tum"}) fs::remove(folder.path() / name);
   write_file(folder.path() / "map.json",
-             R"({"source":"office","profile":"best","digest":"d","frames":{"seen":5,"mapped":3,"without_pose":1}})");
+             R"({"source":"recordings/office/","profile":"best","digest":"d","frames":{"seen":5,"mapped":3,"without_pose":1}})");
   const PageData page = run_page(folder.path());
   EXPECT_EQ(page.json["title"], "map of office");
   EXPECT_TRUE(page.json["score"].is_null());

@@ -87,7 +87,7 @@ for (const [key, id] of [['m', 'mesh'], ['t', 'truth'], ['o', 'mapped'], ['p', '
 }
 for (const id of ['mesh', 'truth', 'mapped', 'path']) await page.locator(`#show-${id}`).check();
 last = await view();
-for (const way of ['label', 'error']) {
+for (const way of ['label', 'error', 'surface']) {
   await page.locator('#colouring').selectOption(way);
   const now = await view();
   assert.notEqual(now, last, `colours by ${way}`);

@@ -101,6 +101,7 @@ export interface MeshInfo {
   label_ids: number[];
   floor: number;
   seen: boolean;
+  error_step: number | null; // metres; of block mesh.errors
 }
 
 export interface PaperRow {

@@ -30,7 +30,15 @@ export function colourOfId(id: number): Rgb {
 // Bad (0) red, middling yellow, good (1) green.
 export function colourOfShare(share: number): Rgb {
   const x = Math.min(1, Math.max(0, share));
-  return hsl(x * 130, 0.65, 0.48);
+  return hsl(x * 130, 0.58, 0.46);
+}
+
+// Right (0) pale, off (1) red, yellow between: what is wrong stands out.
+export function colourOfError(share: number): Rgb {
+  const stops: Rgb[] = [[0.8, 0.84, 0.87], [0.95, 0.76, 0.28], [0.78, 0.14, 0.12]];
+  const x = 2 * Math.min(1, Math.max(0, share));
+  const from = stops[Math.min(1, Math.floor(x))]!, to = stops[Math.min(1, Math.floor(x)) + 1]!, part = x - Math.min(1, Math.floor(x));
+  return [0, 1, 2].map((k) => from[k]! + part * (to[k]! - from[k]!)) as Rgb;
 }
 
 function hsl(hue: number, saturation: number, lightness: number): Rgb {

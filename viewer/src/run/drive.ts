@@ -43,8 +43,11 @@ export class Drive {
     const X_WB = poseOf(frame.X_WB);
     this.marker.position.copy(X_WB.position);
     this.marker.quaternion.copy(X_WB.quaternion);
+    // A recording by hand has no vehicle: its poses are the camera's.
+    const onVehicle = X_WB.position.distanceTo(poseOf(frame.X_WC).position) > 0.01;
+    this.marker.visible = onVehicle;
     this.field.geometry.dispose();
-    this.field.geometry = new THREE.BufferGeometry().setFromPoints(fieldOf(frame, 1.2));
+    this.field.geometry = new THREE.BufferGeometry().setFromPoints(fieldOf(frame, onVehicle ? 1.2 : 0.5));
   }
 
   private addPath(rows: number[][], rgb: Rgb, width: number, lift: number): void {

@@ -1,10 +1,13 @@
 // The map's surface: unpacked once, coloured anew for each way of colouring, drawn up to what a moment has seen.
 import * as THREE from 'three';
 import { blockBytes, type MeshInfo } from '../data';
-import { colourOfId, colourOfShare } from '../format';
+import { colourOfError, colourOfId, colourOfShare } from '../format';
 import type { State } from './state';
 
-export type Colouring = 'photo' | 'label' | 'error';
+export type Colouring = 'photo' | 'label' | 'error' | 'surface';
+
+// Metres: a surface so far off is as red as can be.
+export const kFarOff = 0.03;
 
 const kGrey = [0.62, 0.64, 0.66] as const;
 
@@ -47,6 +50,11 @@ export class MapMesh {
   colour(by: Colouring): void {
     const attribute = this.geometry.getAttribute('color') as THREE.BufferAttribute;
     const colours = attribute.array as Uint8Array;
+    if (by === 'surface' && this.info.error_step !== null) {
+      this.colourByDistance(colours, this.info.error_step);
+      attribute.needsUpdate = true;
+      return;
+    }
     const ofLabel = new Map<number, readonly [number, number, number]>();
     const pick = (label: number): readonly [number, number, number] => {
       if (label === 0) return kGrey;
@@ -66,6 +74,15 @@ export class MapMesh {
       for (let k = 0; k < 3; ++k) colours[3 * i + k] = Math.min(255, 255 * rgb[k]! * shade);
     }
     attribute.needsUpdate = true;
+  }
+
+  private colourByDistance(colours: Uint8Array, step: number): void {
+    const errors = blockBytes('mesh.errors');
+    const table = Array.from({ length: 256 }, (_, n) => colourOfError((n * step) / kFarOff));
+    for (let i = 0; i < errors.length; ++i) {
+      const rgb = table[errors[i]!]!;
+      for (let k = 0; k < 3; ++k) colours[3 * i + k] = Math.min(255, 255 * rgb[k]! * this.shade[i]!);
+    }
   }
 
   // Takes hidden objects out of the surface.

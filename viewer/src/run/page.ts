@@ -3,7 +3,7 @@ import { pictureUrl, type RunData } from '../data';
 import { h, section } from '../dom';
 import type { Keys } from '../keys';
 import { FramePanel } from './frames';
-import type { Colouring } from './mesh';
+import { kFarOff, type Colouring } from './mesh';
 import { cards, chartsOverTime, details, detections, mappedTable, table6, texts, timing } from './score';
 import { State } from './state';
 import { View3d, type Layer } from './view3d';
@@ -93,16 +93,19 @@ function toolbar(data: RunData, state: State, view: View3d, panel: FramePanel | 
     bar.append(h('span', { class: 'cutter' }, range, reading));
   }
   const ways: [Colouring, string][] = [['photo', 'as seen'], ['label', 'by object']];
-  if (data.score) ways.push(['error', 'by error (IoU)']);
+  if (data.score) ways.push(['error', 'by IoU']);
+  if (data.mesh && data.mesh.error_step !== null) ways.push(['surface', 'by distance']);
   const colours = h('select', { id: 'colouring', 'aria-label': 'Colours' }, ...ways.map(([value, text]) => h('option', { value }, text)));
-  const legend = h('span', { class: 'ramp', hidden: true }, 'IoU 0', h('i'), '1');
+  const legend = h('span', { class: 'ramp', hidden: true });
   const colour = (): void => {
     view.colour(colours.value as Colouring);
-    legend.hidden = colours.value !== 'error';
+    legend.hidden = colours.value !== 'error' && colours.value !== 'surface';
+    if (colours.value === 'error') legend.replaceChildren('IoU 0', h('i'), '1');
+    else legend.replaceChildren('0', h('i', { class: 'off' }), `${1000 * kFarOff} mm`);
   };
   colours.addEventListener('change', colour);
-  bar.append(h('label', {}, 'colours ', colours), legend);
-  keys.add(['l'], 'l', 'colours: as seen, by object, by error', () => {
+  if (data.mesh || data.mapped.length > 0) bar.append(h('label', {}, 'colours ', colours), legend);
+  if (data.mesh || data.mapped.length > 0) keys.add(['l'], 'l', 'colours: as seen, by object, by IoU, by distance from the true surface', () => {
     colours.selectedIndex = (colours.selectedIndex + 1) % colours.options.length;
     colour();
   });

@@ -35,7 +35,7 @@ export function cards(data: RunData): HTMLElement {
       const before = data.path?.[i - 1];
       if (before) length += Math.hypot(row[1] - before[1], row[2] - before[2], row[3] - before[3]);
     });
-    list.push(card(`${fixed(length, 1)} m`, 'driven', `in ${fixed(data.path.at(-1)?.[0], 0)} s`));
+    list.push(card(`${fixed(length, 1)} m`, 'path length', `in ${fixed(data.path.at(-1)?.[0], 0)} s`));
   }
   return h('div', { class: 'cards' }, ...list);
 }

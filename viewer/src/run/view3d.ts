@@ -9,6 +9,20 @@ import type { Item, State } from './state';
 
 export type Layer = 'mesh' | 'truth' | 'mapped' | 'path' | 'cut' | 'grow';
 
+// Without a graphics card the processor draws, and smooth edges would take it twice as long.
+function makeContext(): { canvas: HTMLCanvasElement; context: WebGL2RenderingContext } {
+  for (const antialias of [true, false]) {
+    const canvas = h('canvas', { tabindex: 0, 'aria-label': 'The map in 3D: drag to turn, wheel to come nearer, click an object to choose it' });
+    // Kept after drawing, so that a screenshot or a copy of the canvas is never empty.
+    const context = canvas.getContext('webgl2', { antialias, preserveDrawingBuffer: true });
+    if (!context) break;
+    const info = context.getExtension('WEBGL_debug_renderer_info');
+    const card = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
+    if (!antialias || !/swiftshader|llvmpipe|software/i.test(card)) return { canvas, context };
+  }
+  throw new Error('the browser has no WebGL');
+}
+
 export class View3d {
   readonly element = h('div', { class: 'canvas' });
   private readonly renderer: THREE.WebGLRenderer;
@@ -21,13 +35,14 @@ export class View3d {
   private readonly layers: Record<Layer, boolean> = { mesh: true, truth: true, mapped: true, path: true, cut: true, grow: false };
   private cutHeight: number;
   private asked = false;
+  private sized = false;
   private pressed: { x: number; y: number } | null = null;
 
   // Throws where the browser has no WebGL.
   constructor(private readonly state: State) {
     THREE.ColorManagement.enabled = false;
-    const canvas = h('canvas', { tabindex: 0, 'aria-label': 'The map in 3D: drag to turn, wheel to come nearer, click an object to choose it' });
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    const { canvas, context } = makeContext();
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
@@ -83,7 +98,9 @@ export class View3d {
   resetView(): void {
     const box = this.bounds();
     const size = box.getSize(new THREE.Vector3()), middle = box.getCenter(new THREE.Vector3());
-    const away = size.x >= size.y ? new THREE.Vector3(-0.25, -0.72, 0.8) : new THREE.Vector3(-0.72, -0.25, 0.8);
+    // A path alone is flat.
+    const flat = !this.mesh && this.state.items.length === 0;
+    const away = flat ? new THREE.Vector3(0, -0.01, 1) : size.x >= size.y ? new THREE.Vector3(-0.25, -0.72, 0.8) : new THREE.Vector3(-0.72, -0.25, 0.8);
     this.controls.target.copy(middle).setZ(box.min.z + 0.4 * Math.min(size.z, 2));
     this.camera.position.copy(this.controls.target).addScaledVector(away.normalize(), 0.64 * Math.max(3, Math.hypot(size.x, size.y)));
     this.controls.update();
@@ -201,6 +218,7 @@ export class View3d {
   private resize(): void {
     const width = this.element.clientWidth, height = this.element.clientHeight;
     if (width === 0 || height === 0) return;
+    this.sized = true;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -210,7 +228,7 @@ export class View3d {
   }
 
   private ask(): void {
-    if (this.asked) return;
+    if (this.asked || !this.sized) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;

@@ -71,7 +71,7 @@ function cards(data: StudyData, best: Candidate | null, baseline: Candidate | nu
   }
   const run = study.candidates.filter((c) => c.state === 'run').length;
   list.push(card(`${run} of ${study.candidates.length}`, 'candidates run', `${(study.halls ?? []).length} halls, ${(study.seeds ?? []).length} seeds`));
-  return h('div', { class: 'cards' }, ...list);
+  return h('div', { class: 'cards roomy' }, ...list);
 }
 
 function interval(of: { low: number | null; high: number | null } | null | undefined): string {
