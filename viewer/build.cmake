@@ -14,7 +14,7 @@ if(EXISTS "${BUILD}/work/fetched.txt")
   file(READ "${BUILD}/work/fetched.txt" fetched)
 endif()
 if(NOT fetched STREQUAL lock)
-  execute_process(COMMAND "${NPM}" ci --no-audit --no-fund WORKING_DIRECTORY "${BUILD}/work" RESULT_VARIABLE failed
+  execute_process(COMMAND "${NPM}" ci --no-audit --no-fund --fetch-retries=1 --fetch-retry-maxtimeout=5000 WORKING_DIRECTORY "${BUILD}/work" RESULT_VARIABLE failed
                   OUTPUT_FILE "${BUILD}/npm.log" ERROR_FILE "${BUILD}/npm.log")
   if(failed)
     message(WARNING "The viewer's packages could not be fetched (${BUILD}/npm.log): reports are plain pages. Remove ${BUILD}/built.stamp to try again.")

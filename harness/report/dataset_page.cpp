@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kThumbnails = 300, kWidth = 400, kQuality = 80;
+constexpr int kThumbnails = 300, kWidth = 480, kQuality = 80;
 constexpr std::size_t kSideBins = 20, kVisibleBins = 10;
 
 Json box_json(const cv::Rect& box) { return {box.x, box.y, box.width, box.height}; }
@@ -34,8 +34,9 @@ struct ClassCounts {
   std::array<int, kVisibleBins> visible{};
 };
 
-std::string thumbnail(const fs::path& file) {
-  cv::Mat image = cv::imread(file.string(), cv::IMREAD_COLOR);
+// `width`: of the picture, where it is known: large ones are then read at half their size, which takes a quarter of the time.
+std::string thumbnail(const fs::path& file, int width = 0) {
+  cv::Mat image = cv::imread(file.string(), width >= 2 * kWidth ? cv::IMREAD_REDUCED_COLOR_2 : cv::IMREAD_COLOR);
   if (image.empty()) throw Error(file, "is gone or no picture; delete the folder and make the set again");
   if (image.cols > kWidth) {
     const double scale = static_cast<double>(kWidth) / image.cols;
@@ -104,7 +105,7 @@ PageData dataset_page(const fs::path& folder) {
       if (static_cast<std::int64_t>(json["images"].size()) * images > static_cast<std::int64_t>(image.index) * shown) continue;
       if (static_cast<int>(json["images"].size()) >= shown) continue;
       const std::string block = "picture." + image.name;
-      page.blocks[block] = thumbnail(folder / "images" / (image.name + ".jpg"));
+      page.blocks[block] = thumbnail(folder / "images" / (image.name + ".jpg"), image.intrinsics.width);
       json["images"].push_back(image_json(image, hall, block));
     }
   }

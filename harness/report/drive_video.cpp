@@ -165,7 +165,7 @@ cv::Mat picture_of(const LoggedFrame& frame) {
     char text[96];
     std::snprintf(text, sizeof text, "%.40s %.2f%s", d.class_name.c_str(), d.score,
                   d.map_id > 0 ? (" #" + std::to_string(d.map_id)).c_str() : "");
-    draw_text(place, {box.x + 4, std::max(14, box.y + 16)}, text, colour, 0.45);
+    draw_text(place, {box.x + 4, std::max(14, box.y + 16)}, text, cv::Scalar::all(255), 0.45);
   }
   return half;
 }

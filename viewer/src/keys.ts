@@ -28,9 +28,9 @@ export class Keys {
       this.overlay.close();
       return;
     }
-    const rows = this.list.map((key) => h('tr', {}, h('td', {}, h('kbd', {}, key.shown)), h('td', {}, key.text)));
-    rows.push(h('tr', {}, h('td', {}, h('kbd', {}, 'Tab'), ' ', h('kbd', {}, 'Enter')), h('td', {}, 'to a row, a head or a button; choose it')));
-    this.overlay.replaceChildren(h('h2', {}, 'Keys'), h('table', {}, ...rows), h('p', {}, 'Esc or a click closes this.'));
+    const rows = this.list.map((key) => h('li', {}, h('kbd', {}, key.shown), key.text));
+    rows.push(h('li', {}, h('kbd', {}, 'Tab'), h('kbd', {}, 'Enter'), 'to a row, a head, a button; choose it'));
+    this.overlay.replaceChildren(h('h2', {}, 'Keys'), h('ul', {}, ...rows), h('p', {}, 'Esc or a click closes this.'));
     this.overlay.showModal();
   }
 

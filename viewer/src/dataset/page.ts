@@ -28,7 +28,7 @@ function cards(data: DatasetData): HTMLElement {
 
 function boxesOf(data: DatasetData, image: DatasetImage, wanted: number | null, amodal: boolean): SVGSVGElement {
   const [width, height] = image.size;
-  const unit = width / 400;
+  const unit = width / (amodal ? 900 : 400);
   const svg = s('svg', { class: 'boxes', viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: 'none' });
   for (const label of image.labels) {
     if (wanted !== null && label.class !== wanted) continue;
@@ -43,7 +43,7 @@ function boxesOf(data: DatasetData, image: DatasetImage, wanted: number | null, 
     );
     if (amodal) {
       svg.append(
-        s('text', { x: x + 3 * unit, y: Math.max(y, 0) + 9 * unit, 'font-size': 8 * unit, fill: '#fff', stroke: '#000', 'stroke-width': 2 * unit, 'paint-order': 'stroke' }, `${data.dataset.classes[label.class]?.name ?? '?'} ${Math.round(100 * label.visible)} %`),
+        s('text', { x: x + 3 * unit, y: Math.max(y, 0) + 14 * unit, 'font-size': 13 * unit, fill: '#fff', stroke: '#000', 'stroke-width': 2 * unit, 'paint-order': 'stroke' }, `${data.dataset.classes[label.class]?.name ?? '?'} ${Math.round(100 * label.visible)} %`),
       );
     }
   }
@@ -59,7 +59,7 @@ function boxesOf(data: DatasetData, image: DatasetImage, wanted: number | null, 
 class Sheet {
   readonly element: HTMLElement;
   private readonly grid = h('div', { class: 'sheet' });
-  private readonly large = h('dialog', { class: 'large', 'aria-label': 'One picture' });
+  private readonly large = h('dialog', { class: 'large', 'aria-label': 'One picture', autofocus: true, tabindex: -1 });
   private readonly count = h('span', { class: 'note' });
   private readonly classes: HTMLSelectElement;
   private readonly splits: HTMLSelectElement;
@@ -81,7 +81,7 @@ class Sheet {
       this.fill();
     });
     document.body.append(this.large);
-    this.large.addEventListener('click', () => this.large.close());
+    this.large.addEventListener('click', (event) => event.target instanceof HTMLAnchorElement || this.large.close());
     this.element = section('Pictures', h('p', { class: 'axes' }, this.classes, this.splits, h('label', {}, this.boxes, 'boxes'), this.count), this.grid);
     this.fill();
   }
@@ -128,7 +128,7 @@ class Sheet {
     this.current = index;
     this.large.replaceChildren(
       h('figure', { class: 'shot' }, h('img', { src: pictureUrl(image.block), alt: `picture ${image.name}` }), this.boxes.checked ? boxesOf(this.data, image, null, true) : null),
-      h('p', {}, h('b', {}, image.name), ` ${image.hall}, ${image.kind} view, ${image.split}; ${image.labels.length} labels, ${image.left_out.length} left out. Dashed: the whole object, hidden and cut-off parts included; grey: left out. Arrows go on, Esc closes.`),
+      h('p', {}, h('b', {}, image.name), ` ${image.hall}, ${image.kind} view, ${image.split}; ${image.labels.length} ${image.labels.length === 1 ? 'label' : 'labels'}, ${image.left_out.length} left out. Dashed: the whole object, hidden and cut-off parts included; grey: left out. Arrows go on, Esc closes. `, h('a', { href: `images/${image.name}.jpg` }, 'The picture itself')),
     );
     if (!this.large.open) this.large.showModal();
   }
