@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -11,12 +12,14 @@
 #include "harness/report/base64.h"
 #include "harness/report/dataset_page.h"
 #include "harness/report/frame_log.h"
+#include "harness/report/page_mesh.h"
 #include "harness/report/page_template.h"
 #include "harness/report/report_file.h"
 #include "harness/report/run_page.h"
 #include "harness/report/static_page.h"
 #include "harness/report/study_page.h"
 #include "harness/score/trajectory_file.h"
+#include "mapper/output/map_files.h"
 #include "tests/harness/score_fixtures.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
@@ -263,6 +266,64 @@ TEST(StudyPage, SaysWhichKeyIsWrong) {
   expect_said([](Json& s) { s["candidates"][0].erase("measures"); }, "c000, measures");
   write_file(folder.path() / "results.json", "nothing");
   EXPECT_ERROR(study_page(folder.path()), "results.json");
+}
+
+// Files of a folder may be damaged in any way: a page is made, or one line says what is wrong.
+TEST(ReportFiles, AreReadOrRefusedWhateverTheirBytes) {
+  const TemporaryFolder folder;
+  const fs::path dir = folder.path() / "run", study = folder.path() / "study";
+  make_folder(dir);
+  make_folder(study);
+  write_small_run(dir);
+  SurfaceMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5f}};
+  mesh.normals.assign(3, {0, 0, 1});
+  mesh.colours.assign(3, {1, 2, 3});
+  mesh.labels = {0, 4, 4};
+  mesh.triangles = {{0, 1, 2}};
+  write_ply(dir / "map.ply", mesh);
+  write_cloud_ply(dir / "cloud.ply", mesh);
+  write_surface_errors(dir, mesh.vertices, {0.0f, 0.1f, 0.2f});
+  fs::remove(dir / "trajectory.tum");  // long, and read by others' code
+  write_file(study / "results.json", small_study().dump());
+  std::mt19937 random(11);
+  const auto below = [&random](std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); };
+  for (const fs::path& file : {dir / "map.ply", dir / "cloud.ply", dir / "surface_error.ply", dir / "frames.jsonl", dir / "score.json",
+                               dir / "timing.csv", study / "results.json"}) {
+    const std::string good = read_file(file);
+    const bool is_text = file.extension() != ".ply";
+    for (int i = 0; i < 150; ++i) {
+      std::string bytes = good;
+      for (std::size_t k = 0; k <= below(3); ++k) {
+        switch (below(4)) {
+          case 0:
+            bytes[below(bytes.size())] = static_cast<char>(is_text ? ' ' + below(95) : below(256));
+            break;
+          case 1:
+            bytes.erase(below(bytes.size()), 1 + below(8));
+            break;
+          case 2:
+            bytes.insert(below(bytes.size()), bytes.substr(below(bytes.size()), 1 + below(12)));
+            break;
+          default: {  // a value of another type
+            const std::size_t number = bytes.find_first_of("0123456789", below(bytes.size()));
+            if (number != std::string::npos) bytes.replace(number, 1, below(2) == 0 ? "null" : "\"x\"");
+          }
+        }
+      }
+      write_file(file, bytes);
+      try {
+        const PageData page = file.parent_path() == study ? study_page(study) : run_page(dir);
+        EXPECT_FALSE(static_page(page, dir).empty());
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      } catch (const std::exception& other) {
+        ADD_FAILURE() << file.filename() << ": " << other.what() << "\n" << (is_text ? bytes : "");
+        break;
+      }
+    }
+    write_file(file, good);
+  }
 }
 
 TEST(ReportKind, IsKnownByTheFiles) {
