@@ -12,13 +12,19 @@ interface Drawn {
   item: Item;
   side: 'truth' | 'mapped';
   group: THREE.Group;
+  box: Box;
+  lines: LineSegments2;
   edges: LineMaterial;
+  label: THREE.Sprite | null;
   sides: THREE.Mesh<THREE.BoxGeometry, THREE.MeshBasicMaterial>;
 }
 
 export class Cuboids {
   readonly object = new THREE.Group();
   private readonly drawn: Drawn[] = [];
+  // Objects of a moment that the finished map no longer has.
+  private readonly passing = new THREE.Group();
+  private readonly passingMaterial = new LineMaterial({ linewidth: 1.6, color: new THREE.Color(...kMapped).getHex(THREE.LinearSRGBColorSpace) });
   showTruth = true;
   showMapped = true;
 
@@ -27,6 +33,7 @@ export class Cuboids {
       if (item.truth) this.add(item, 'truth', item.truth);
       if (item.mapped) this.add(item, 'mapped', item.mapped);
     }
+    this.object.add(this.passing);
     this.colour('photo');
   }
 
@@ -37,6 +44,7 @@ export class Cuboids {
 
   setResolution(width: number, height: number): void {
     for (const d of this.drawn) d.edges.resolution.set(width, height);
+    this.passingMaterial.resolution.set(width, height);
   }
 
   colour(by: Colouring): void {
@@ -50,34 +58,55 @@ export class Cuboids {
     this.update();
   }
 
-  // `known`: ids of the objects that the map had at the moment; null for all.
-  update(known: Set<number> | null = null): void {
+  // `then`: the map's objects at a moment, as they were; null for those of the finished map.
+  update(then: Box[] | null = null): void {
     for (const d of this.drawn) {
-      const there = d.side === 'truth' || known === null || known.has(d.item.mapped?.id ?? 0);
+      const box = d.side === 'truth' || then === null ? d.box : then.find((each) => each.id === d.box.id);
+      const there = box !== undefined;
+      if (box) place(d, box);
       d.group.visible = there && (d.side === 'truth' ? this.showTruth : this.showMapped) && !this.state.hidden.has(d.item);
       const chosen = this.state.chosen === d.item;
       d.edges.linewidth = chosen ? 4.5 : 2.2;
       d.sides.material.opacity = chosen ? 0.3 : 0.08;
+    }
+    for (const lines of this.passing.children) (lines as LineSegments2).geometry.dispose();
+    this.passing.clear();
+    if (!this.showMapped) return;
+    for (const box of then ?? []) {
+      if (this.state.itemOfMapId(box.id)) continue;
+      const lines = edgesOf(box.size, this.passingMaterial);
+      lines.position.set(...box.centre);
+      lines.rotation.z = box.yaw;
+      this.passing.add(lines);
     }
   }
 
   private add(item: Item, side: 'truth' | 'mapped', box: Box): void {
     const shape = new THREE.BoxGeometry(...box.size);
     const edges = new LineMaterial({ linewidth: 2.2 });
-    const lines = new LineSegments2(new LineSegmentsGeometry().fromEdgesGeometry(new THREE.EdgesGeometry(shape)), edges);
+    const lines = edgesOf(box.size, edges);
     const sides = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.08, depthWrite: false }));
     const group = new THREE.Group();
     group.add(lines, sides);
-    group.position.set(...box.centre);
-    group.rotation.z = box.yaw;
-    if (side === 'mapped' || !item.mapped) {
-      const label = nameSprite(`${box.id}`, side);
-      label.position.z = box.size[2] / 2 + 0.22;
-      group.add(label);
-    }
+    const label = side === 'mapped' || !item.mapped ? nameSprite(`${box.id}`, side) : null;
+    if (label) group.add(label);
     this.object.add(group);
-    this.drawn.push({ item, side, group, edges, sides });
+    this.drawn.push({ item, side, group, box, lines, edges, label, sides });
   }
+}
+
+function edgesOf(size: [number, number, number], material: LineMaterial): LineSegments2 {
+  return new LineSegments2(new LineSegmentsGeometry().fromEdgesGeometry(new THREE.EdgesGeometry(new THREE.BoxGeometry(...size))), material);
+}
+
+// Puts what is drawn for one box where another is, at its size.
+function place(d: Drawn, box: Box): void {
+  d.group.position.set(...box.centre);
+  d.group.rotation.z = box.yaw;
+  const scale = box.size.map((side, k) => side / Math.max(d.box.size[k] ?? side, 1e-6)) as [number, number, number];
+  d.lines.scale.set(...scale);
+  d.sides.scale.set(...scale);
+  if (d.label) d.label.position.z = box.size[2] / 2 + 0.22;
 }
 
 function nameSprite(text: string, side: 'truth' | 'mapped'): THREE.Sprite {

@@ -203,7 +203,7 @@ export class View3d {
     }
     this.cuboids.showTruth = this.layers.truth;
     this.cuboids.showMapped = this.layers.mapped;
-    this.cuboids.update(grows && frame ? new Set(frame.objects.map((object) => object.id)) : null);
+    this.cuboids.update(grows && frame ? frame.objects : null);
     this.drive.showPath = this.layers.path;
     this.drive.update();
     this.ask();
