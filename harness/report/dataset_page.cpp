@@ -65,7 +65,7 @@ Json read_manifest(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) throw Error(file, "is missing: the set is not finished; `waretwin dataset` goes on with it");
   try {
-    const Json manifest = Json::parse(read_file(file));
+    Json manifest = Json::parse(read_file(file));
     for (const char* key : {"images", "halls", "without_labels"}) manifest.at(key).get<int>();
     for (const char* key : {"labels", "splits", "views", "left_out"}) {
       if (!manifest.at(key).is_object()) throw Error(file, std::string(key) + ": expected counts by name");

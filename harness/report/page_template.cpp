@@ -35,7 +35,7 @@ std::optional<std::string> page_template() {
   return std::nullopt;
 }
 
-std::string script_safe(std::string json) {
+std::string script_safe(const std::string& json) {
   // "<" stands in JSON only within strings, where its escape means the same.
   std::string safe;
   safe.reserve(json.size());

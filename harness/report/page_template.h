@@ -16,6 +16,6 @@ std::optional<std::string> page_template();
 std::string filled_page(const std::string& page, const PageData& data);
 
 // JSON text that may stand inside a script element: nothing in it ends the element or opens a comment.
-std::string script_safe(std::string json);
+std::string script_safe(const std::string& json);
 
 }  // namespace waretwin

@@ -1,11 +1,10 @@
 // True and mapped cuboids: edges that are seen from afar, faint sides that can be clicked, and a name above.
 import * as THREE from 'three';
-import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
-import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
-import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import type { Box } from '../data';
+import { h } from '../dom';
 import { colourOfId, colourOfShare, kMapped, kTruth, type Rgb } from '../format';
 import type { Colouring } from './mesh';
+import { lines, Paint } from './paint';
 import type { Item, State } from './state';
 
 interface Drawn {
@@ -13,10 +12,11 @@ interface Drawn {
   side: 'truth' | 'mapped';
   group: THREE.Group;
   box: Box;
-  lines: LineSegments2;
-  edges: LineMaterial;
-  label: THREE.Sprite | null;
-  sides: THREE.Mesh<THREE.BoxGeometry, THREE.MeshBasicMaterial>;
+  lines: THREE.Mesh;
+  edges: Paint;
+  label: HTMLElement | null;
+  height: number; // of the label over the middle, metres
+  sides: THREE.Mesh<THREE.BoxGeometry, Paint>;
 }
 
 export class Cuboids {
@@ -24,7 +24,9 @@ export class Cuboids {
   private readonly drawn: Drawn[] = [];
   // Objects of a moment that the finished map no longer has.
   private readonly passing = new THREE.Group();
-  private readonly passingMaterial = new LineMaterial({ linewidth: 1.6, color: new THREE.Color(...kMapped).getHex(THREE.LinearSRGBColorSpace) });
+  private readonly passingMaterial = new Paint(kMapped, { line: 1.6 });
+  // Their names, over the canvas.
+  readonly labels = h('div', { class: 'labels' });
   showTruth = true;
   showMapped = true;
 
@@ -42,9 +44,16 @@ export class Cuboids {
     return this.drawn.filter((d) => d.group.visible).map((d) => ({ mesh: d.sides, item: d.item }));
   }
 
-  setResolution(width: number, height: number): void {
-    for (const d of this.drawn) d.edges.resolution.set(width, height);
-    this.passingMaterial.resolution.set(width, height);
+  placeLabels(camera: THREE.Camera, width: number, height: number): void {
+    const at = new THREE.Vector3();
+    for (const d of this.drawn) {
+      if (!d.label) continue;
+      at.copy(d.group.position);
+      at.z += d.height;
+      at.project(camera);
+      d.label.hidden = !d.group.visible || at.z > 1;
+      d.label.style.transform = `translate(-50%, -50%) translate(${(((at.x + 1) / 2) * width).toFixed(1)}px, ${(((1 - at.y) / 2) * height).toFixed(1)}px)`;
+    }
   }
 
   colour(by: Colouring): void {
@@ -52,8 +61,8 @@ export class Cuboids {
       let rgb: Rgb = d.side === 'truth' ? kTruth : kMapped;
       if (d.side === 'mapped' && by === 'label') rgb = colourOfId(d.item.mapped?.id ?? 0);
       if (d.side === 'mapped' && by === 'error' && this.state.data.score) rgb = colourOfShare(d.item.score?.iou3d ?? 0);
-      d.edges.color.setRGB(...rgb);
-      d.sides.material.color.setRGB(...rgb);
+      d.edges.setColour(rgb);
+      d.sides.material.setColour(rgb);
     }
     this.update();
   }
@@ -66,37 +75,38 @@ export class Cuboids {
       if (box) place(d, box);
       d.group.visible = there && (d.side === 'truth' ? this.showTruth : this.showMapped) && !this.state.hidden.has(d.item);
       const chosen = this.state.chosen === d.item;
-      d.edges.linewidth = chosen ? 4.5 : 2.2;
-      d.sides.material.opacity = chosen ? 0.3 : 0.08;
+      d.edges.setWidth(chosen ? 4.5 : 2.2);
+      d.sides.material.setOpacity(chosen ? 0.3 : 0.08);
     }
-    for (const lines of this.passing.children) (lines as LineSegments2).geometry.dispose();
+    for (const gone of this.passing.children) (gone as THREE.Mesh).geometry.dispose();
     this.passing.clear();
     if (!this.showMapped) return;
     for (const box of then ?? []) {
       if (this.state.itemOfMapId(box.id)) continue;
-      const lines = edgesOf(box.size, this.passingMaterial);
-      lines.position.set(...box.centre);
-      lines.rotation.z = box.yaw;
-      this.passing.add(lines);
+      const edges = edgesOf(box.size, this.passingMaterial);
+      edges.position.set(...box.centre);
+      edges.rotation.z = box.yaw;
+      this.passing.add(edges);
     }
   }
 
   private add(item: Item, side: 'truth' | 'mapped', box: Box): void {
     const shape = new THREE.BoxGeometry(...box.size);
-    const edges = new LineMaterial({ linewidth: 2.2 });
-    const lines = edgesOf(box.size, edges);
-    const sides = new THREE.Mesh(shape, new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.08, depthWrite: false }));
+    const edges = new Paint(kMapped, { line: 2.2 });
+    const outline = edgesOf(box.size, edges);
+    const sides = new THREE.Mesh(shape, new Paint(kMapped, { opacity: 0.08 }));
     const group = new THREE.Group();
-    group.add(lines, sides);
-    const label = side === 'mapped' || !item.mapped ? nameSprite(`${box.id}`, side) : null;
-    if (label) group.add(label);
+    group.add(outline, sides);
+    const label = side === 'mapped' || !item.mapped ? h('span', { class: side }, String(box.id)) : null;
+    if (label) this.labels.append(label);
     this.object.add(group);
-    this.drawn.push({ item, side, group, box, lines, edges, label, sides });
+    this.drawn.push({ item, side, group, box, lines: outline, edges, label, height: 0, sides });
   }
 }
 
-function edgesOf(size: [number, number, number], material: LineMaterial): LineSegments2 {
-  return new LineSegments2(new LineSegmentsGeometry().fromEdgesGeometry(new THREE.EdgesGeometry(new THREE.BoxGeometry(...size))), material);
+function edgesOf(size: [number, number, number], material: Paint): THREE.Mesh {
+  const edges = new THREE.EdgesGeometry(new THREE.BoxGeometry(...size));
+  return lines(edges.getAttribute('position').array as Float32Array, material);
 }
 
 // Puts what is drawn for one box where another is, at its size.
@@ -106,27 +116,5 @@ function place(d: Drawn, box: Box): void {
   const scale = box.size.map((side, k) => side / Math.max(d.box.size[k] ?? side, 1e-6)) as [number, number, number];
   d.lines.scale.set(...scale);
   d.sides.scale.set(...scale);
-  if (d.label) d.label.position.z = box.size[2] / 2 + 0.22;
-}
-
-function nameSprite(text: string, side: 'truth' | 'mapped'): THREE.Sprite {
-  const canvas = document.createElement('canvas');
-  canvas.width = 96;
-  canvas.height = 56;
-  const pen = canvas.getContext('2d');
-  if (pen) {
-    pen.fillStyle = side === 'truth' ? 'rgb(23 120 75 / 92%)' : 'rgb(30 34 40 / 86%)';
-    pen.beginPath();
-    pen.roundRect(4, 4, 88, 48, 14);
-    pen.fill();
-    pen.fillStyle = '#fff';
-    pen.font = '600 32px system-ui, sans-serif';
-    pen.textAlign = 'center';
-    pen.textBaseline = 'middle';
-    pen.fillText(text, 48, 29);
-  }
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, sizeAttenuation: false }));
-  sprite.scale.set(0.048, 0.028, 1);
-  sprite.renderOrder = 10;
-  return sprite;
+  d.height = box.size[2] / 2 + 0.22;
 }

@@ -1,26 +1,25 @@
 // The robot's path, as estimated and as it was, and where robot and camera are at a moment.
 import * as THREE from 'three';
-import { Line2 } from 'three/examples/jsm/lines/Line2.js';
-import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
-import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import type { Frame, PoseRow } from '../data';
 import { kPath, kTruePath, type Rgb } from '../format';
+import { lineGeometry, lines, Paint } from './paint';
 import type { State } from './state';
+
+const kNose: Rgb = [0.95, 0.68, 0.1];
 
 export class Drive {
   readonly object = new THREE.Group();
   private readonly paths = new THREE.Group();
-  private readonly materials: LineMaterial[] = [];
   private readonly marker = new THREE.Group();
-  private readonly field = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: new THREE.Color(0.95, 0.68, 0.1) }));
+  private readonly field = lines([], new Paint(kNose, { line: 1.4 }));
 
   constructor(private readonly state: State) {
     if (state.data.true_path) this.addPath(state.data.true_path, kTruePath, 2, 0.03);
     if (state.data.path) this.addPath(state.data.path, kPath, 2.6, 0.05);
-    const body = new THREE.Mesh(new THREE.CylinderGeometry(0.22, 0.22, 0.18, 28), new THREE.MeshBasicMaterial({ color: new THREE.Color(...kPath) }));
+    const body = new THREE.Mesh(new THREE.CylinderGeometry(0.22, 0.22, 0.18, 28), new Paint(kPath));
     body.rotation.x = Math.PI / 2;
     body.position.z = 0.12;
-    const nose = new THREE.Mesh(new THREE.ConeGeometry(0.11, 0.26, 20), new THREE.MeshBasicMaterial({ color: new THREE.Color(0.95, 0.68, 0.1) }));
+    const nose = new THREE.Mesh(new THREE.ConeGeometry(0.11, 0.26, 20), new Paint(kNose));
     nose.rotation.z = -Math.PI / 2;
     nose.position.set(0.26, 0, 0.12);
     this.marker.add(body, nose);
@@ -30,10 +29,6 @@ export class Drive {
 
   set showPath(on: boolean) {
     this.paths.visible = on;
-  }
-
-  setResolution(width: number, height: number): void {
-    for (const material of this.materials) material.resolution.set(width, height);
   }
 
   update(): void {
@@ -47,15 +42,17 @@ export class Drive {
     const onVehicle = X_WB.position.distanceTo(poseOf(frame.X_WC).position) > 0.01;
     this.marker.visible = onVehicle;
     this.field.geometry.dispose();
-    this.field.geometry = new THREE.BufferGeometry().setFromPoints(fieldOf(frame, onVehicle ? 1.2 : 0.5));
+    const points = fieldOf(frame, onVehicle ? 1.2 : 0.5).flatMap((p) => [p.x, p.y, p.z]);
+    this.field.geometry = lineGeometry(points);
   }
 
   private addPath(rows: number[][], rgb: Rgb, width: number, lift: number): void {
     if (rows.length < 2) return;
-    const points = rows.flatMap((row) => [row[1]!, row[2]!, row[3]! + lift]);
-    const material = new LineMaterial({ linewidth: width, color: new THREE.Color(...rgb).getHex(THREE.LinearSRGBColorSpace) });
-    this.materials.push(material);
-    this.paths.add(new Line2(new LineGeometry().setPositions(points), material));
+    const pairs = new Float32Array(6 * (rows.length - 1));
+    for (let i = 0; i + 1 < rows.length; ++i) {
+      [rows[i]!, rows[i + 1]!].forEach((row, k) => pairs.set([row[1]!, row[2]!, row[3]! + lift], 6 * i + 3 * k));
+    }
+    this.paths.add(lines(pairs, new Paint(rgb, { line: width })));
   }
 }
 

@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { blockBytes, type MeshInfo } from '../data';
 import { colourOfError, colourOfId, colourOfShare } from '../format';
+import { Paint } from './paint';
 import type { State } from './state';
 
 export type Colouring = 'photo' | 'label' | 'error' | 'surface';
@@ -15,7 +16,7 @@ export class MapMesh {
   readonly object: THREE.Mesh;
   readonly labels: Int32Array; // map id of each vertex
   private readonly geometry = new THREE.BufferGeometry();
-  private readonly material = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide });
+  private readonly material = new Paint([1, 1, 1], { own: true });
   private readonly positions: Float32Array;
   private readonly photo: Uint8Array;
   private readonly shade: Float32Array;
@@ -43,8 +44,7 @@ export class MapMesh {
 
   // Far parts and parts above the cut are not drawn.
   cutAt(height: number | null): void {
-    this.material.clippingPlanes = height === null ? [] : [new THREE.Plane(new THREE.Vector3(0, 0, -1), height)];
-    this.material.needsUpdate = true;
+    this.material.setCut(height);
   }
 
   colour(by: Colouring): void {

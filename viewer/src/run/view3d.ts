@@ -4,23 +4,18 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { h } from '../dom';
 import { Cuboids } from './cuboids';
 import { Drive } from './drive';
+import { screen } from './paint';
 import { MapMesh, type Colouring } from './mesh';
 import type { Item, State } from './state';
 
 export type Layer = 'mesh' | 'truth' | 'mapped' | 'path' | 'cut' | 'grow';
 
-// Without a graphics card the processor draws, and smooth edges would take it twice as long.
-function makeContext(): { canvas: HTMLCanvasElement; context: WebGL2RenderingContext } {
-  for (const antialias of [true, false]) {
-    const canvas = h('canvas', { tabindex: 0, 'aria-label': 'The map in 3D: drag to turn, wheel to come nearer, click an object to choose it' });
-    // Kept after drawing, so that a screenshot or a copy of the canvas is never empty.
-    const context = canvas.getContext('webgl2', { antialias, preserveDrawingBuffer: true });
-    if (!context) break;
-    const info = context.getExtension('WEBGL_debug_renderer_info');
-    const card = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
-    if (!antialias || !/swiftshader|llvmpipe|software/i.test(card)) return { canvas, context };
-  }
-  throw new Error('the browser has no WebGL');
+// How many pixels are drawn for one of the screen: more smooth the edges. Without a graphics card the processor draws them all, and one must do.
+function pixelRatioOf(renderer: THREE.WebGLRenderer): number {
+  const context = renderer.getContext();
+  const info = context.getExtension('WEBGL_debug_renderer_info');
+  const card = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
+  return /swiftshader|llvmpipe|software/i.test(card) ? 1 : Math.min(2, 1.5 * window.devicePixelRatio);
 }
 
 export class View3d {
@@ -35,20 +30,23 @@ export class View3d {
   private readonly layers: Record<Layer, boolean> = { mesh: true, truth: true, mapped: true, path: true, cut: true, grow: false };
   private cutHeight: number;
   private asked = false;
-  private sized = false;
+  private compiled = false;
   private pressed: { x: number; y: number } | null = null;
 
   // Throws where the browser has no WebGL.
   constructor(private readonly state: State) {
     THREE.ColorManagement.enabled = false;
-    const { canvas, context } = makeContext();
-    this.renderer = new THREE.WebGLRenderer({ canvas, context });
+    const canvas = h('canvas', { tabindex: 0, 'aria-label': 'The map in 3D: drag to turn, wheel to come nearer, click an object to choose it' });
+    // Kept after drawing, so that a screenshot or a copy of the canvas is never empty.
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: true });
+    // Asking for errors would wait for each shader in turn.
+    this.renderer.debug.checkShaderErrors = false;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
-    this.renderer.localClippingEnabled = true;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(pixelRatioOf(this.renderer));
     this.element.append(canvas);
     this.mesh = state.data.mesh ? new MapMesh(state.data.mesh, state) : null;
     this.cuboids = new Cuboids(state);
+    this.element.append(this.cuboids.labels);
     this.drive = new Drive(state);
     if (this.mesh) this.scene.add(this.mesh.object);
     this.scene.add(this.cuboids.object, this.drive.object);
@@ -63,6 +61,11 @@ export class View3d {
     canvas.addEventListener('pointerdown', (event) => (this.pressed = { x: event.clientX, y: event.clientY }));
     canvas.addEventListener('pointerup', (event) => this.onRelease(event));
     new ResizeObserver(() => this.resize()).observe(this.element);
+    // Shaders are made side by side; then it is drawn for the first time.
+    void this.renderer.compileAsync(this.scene, this.camera).then(() => {
+      this.compiled = true;
+      this.ask();
+    });
     state.whenChosen(() => this.refresh());
     state.whenFrame(() => this.refresh());
     state.whenHidden(() => {
@@ -218,21 +221,20 @@ export class View3d {
   private resize(): void {
     const width = this.element.clientWidth, height = this.element.clientHeight;
     if (width === 0 || height === 0) return;
-    this.sized = true;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.cuboids.setResolution(width, height);
-    this.drive.setResolution(width, height);
+    screen.value.set(width, height);
     this.ask();
   }
 
   private ask(): void {
-    if (this.asked || !this.sized) return;
+    if (this.asked || !this.compiled) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
       this.renderer.render(this.scene, this.camera);
+      this.cuboids.placeLabels(this.camera, this.element.clientWidth, this.element.clientHeight);
     });
   }
 }
