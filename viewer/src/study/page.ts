@@ -138,7 +138,9 @@ function chosen(data: StudyData, choice: Choice, baseline: Candidate | null): HT
     const other = baseline && baseline !== candidate ? baseline : null;
     const rows = data.study.measures.map((measure) => {
       const value = candidate.measures?.[measure.name], against = value?.difference;
-      const better = against?.mean ? (against.mean > 0) === ((measure.better ?? 'more') === 'more') : null;
+      // Coloured only where the interval leaves no doubt about the sign.
+      const clear = against?.mean && (against.low === null || against.high === null || against.low > 0 || against.high < 0);
+      const better = clear && against?.mean ? (against.mean > 0) === ((measure.better ?? 'more') === 'more') : null;
       return h(
         'tr',
         {},
