@@ -14,7 +14,10 @@ packages=(
   liboctomap-dev  # optional: without it no octomap.bt is written
   libtorch-dev    # optional: without it no detector is trained
   darknet         # optional: tests hold trained detectors against it
+  chromium        # optional: tests use the report page in it
 )
+# Optional: without them report.html is a plain page. Node from elsewhere will do, and would not go together with Debian's npm.
+command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
 for argument in "$@"; do
   case "$argument" in
     --tools) packages+=(clang-format clang-tidy) ;;

@@ -33,6 +33,17 @@ add_library(waretwin_opencv_dnn INTERFACE)
 add_library(waretwin::opencv_dnn ALIAS waretwin_opencv_dnn)
 target_link_libraries(waretwin_opencv_dnn INTERFACE waretwin::opencv opencv_dnn)
 
+# For the drive as a video. Debian's libopencv-dev brings it; a smaller build of OpenCV may lack it.
+find_package(OpenCV 4 QUIET OPTIONAL_COMPONENTS videoio)
+if(TARGET opencv_videoio)
+  add_library(waretwin_opencv_videoio INTERFACE)
+  add_library(waretwin::opencv_videoio ALIAS waretwin_opencv_videoio)
+  target_link_libraries(waretwin_opencv_videoio INTERFACE waretwin::opencv opencv_videoio)
+  target_compile_definitions(waretwin_opencv_videoio INTERFACE WARETWIN_VIDEO)
+else()
+  message(STATUS "OpenCV's videoio not found: waretwin report --video is left out (libopencv-dev)")
+endif()
+
 add_library(waretwin_embree INTERFACE)
 add_library(waretwin::embree ALIAS waretwin_embree)
 target_link_libraries(waretwin_embree INTERFACE embree)

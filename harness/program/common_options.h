@@ -48,5 +48,6 @@ Command add_detect_command(CLI::App& program);
 Command add_train_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
 Command add_study_command(CLI::App& program);
+Command add_report_command(CLI::App& program);
 
 }  // namespace waretwin

@@ -14,6 +14,7 @@
 #include "harness/program/freed_memory.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/progress.h"
+#include "harness/report/report_file.h"
 
 namespace waretwin {
 
@@ -95,6 +96,7 @@ int dataset(const DatasetOptions& options) {
     std::printf("this shard is done; %d halls of others are missing: the lists are made by whoever finishes last\n", summary.missing_halls);
     return 0;
   }
+  write_report(options.out);
   std::printf("%d pictures, %d of them without labels\n", summary.images, summary.empty);
   for (std::size_t i = 0; i < summary.classes.size(); ++i)
     std::printf("  %-20s %6d labels\n", summary.classes[i].c_str(), summary.labels[i]);
@@ -103,7 +105,7 @@ int dataset(const DatasetOptions& options) {
     spdlog::info("no split 'valid', which training needs: {} pictures are of {} halls; a smaller dataset.images_per_hall makes more",
                  summary.images, (summary.images + config.hall_size() - 1) / config.hall_size());
   }
-  std::cout << "set in " << options.out << " (waretwin train " << options.out << " --out DIR); contact_sheet.png shows some\n";
+  std::cout << "set in " << options.out << " (waretwin train " << options.out << " --out DIR); report.html shows it\n";
   return 0;
 }
 

@@ -19,6 +19,7 @@
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
 #include "harness/program/suite_options.h"
+#include "harness/report/report_file.h"
 #include "harness/run/budget.h"
 #include "harness/run/run_choice.h"
 #include "harness/run/run_folder.h"
@@ -152,6 +153,8 @@ int run(const RunOptions& options) {
   std::cout << "digest " << result.score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json"
             << (options.budget ? ", budget.md)\n" : ")\n");
   const bool got_worse = baseline && worse_than(*baseline, tolerances, options, result.score, *folder);
+  // Once more, with budget.md and baseline.md.
+  if (options.budget || baseline) write_report(folder->path());
   if (!result.score.motion || result.score.motion->contacts.empty()) return got_worse ? 1 : 0;
   // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
   for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));

@@ -68,6 +68,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
   const StreamInfo& info = stream.info();
   MappingResult result;
   Album album;
+  FrameLog log;
   double source_ms = 0.0;
   std::vector<double> source_times;
   Mapper mapper(config, std::move(stages), info);
@@ -76,8 +77,9 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     source_times.push_back(source_ms);
     const int index = static_cast<int>(source_times.size()) - 1;
     if (hooks.on_frame) hooks.on_frame(frame);
+    const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
+    if (hooks.pictures && log.wants(index)) log.add(logged_frame(index, frame, mapper.map().objects, camera));
     if (hooks.pictures && album.wants(index)) {
-      const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
       const double far_m = std::min(camera.depth_max_m, 10.0);
       std::vector<FramePicture> pictures = {{".colour", draw_frame(frame, mapper.map().objects, camera.intrinsics)},
                                             {".depth", draw_depth(frame.frame.depth, camera.depth_min_m, far_m)}};
@@ -126,6 +128,7 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
   result.map = mapper.finish();
   for (std::size_t i = 0; i < result.map.frames.size(); ++i) result.frames.push_back({result.map.frames[i], source_times[i]});
   result.pictures = album.take();
+  result.kept_frames = log.take();
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/report/frame_log.h"
 #include "mapper/mapper.h"
 #include "sensors/sensor_stream.h"
 
@@ -26,9 +27,10 @@ struct FramePicture {
 struct MappingResult {
   ObjectMap map;
   std::vector<FrameRow> frames;
-  std::vector<FramePicture> pictures;  // of a few frames spread over the drive
-  std::optional<Pose> X_BL;            // of a stream with a laser and no camera: the laser on the vehicle, see write_mapping
-  double stream_s = 0.0;               // between the first and the last event
+  std::vector<FramePicture> pictures;    // of a few frames spread over the drive
+  std::vector<LoggedFrame> kept_frames;  // more of them, small, for the report and the video
+  std::optional<Pose> X_BL;              // of a stream with a laser and no camera: the laser on the vehicle, see write_mapping
+  double stream_s = 0.0;                 // between the first and the last event
   double wall_s = 0.0;
 };
 

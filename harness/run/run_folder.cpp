@@ -6,8 +6,10 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/version.h"
 #include "harness/pictures/picture_file.h"
-#include "harness/score/motion_text.h"
+#include "harness/report/page_mesh.h"
+#include "harness/report/report_file.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
 #include "mapper/integrate/tsdf_volume.h"
@@ -45,12 +47,6 @@ std::string upright_json(const Pose& X_RW) {
   return json.dump(2) + "\n";
 }
 
-std::string text(const char* pattern, double value) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, pattern, value);
-  return buffer;
-}
-
 // Height beyond which pictures cut the map off, so that a ceiling does not hide the hall: 2.5 m above the lowest half percent of vertices.
 double picture_ceiling(const SurfaceMesh& mesh) {
   constexpr double kHeight = 2.5;
@@ -62,15 +58,7 @@ double picture_ceiling(const SurfaceMesh& mesh) {
   return static_cast<double>(*low) + kHeight;
 }
 
-const std::vector<std::string> kMapFiles = {"cuboids.json",   "map.glb",   "map.ply",        "cloud.ply",  "map.waretwin", "occupancy.pgm",
-                                            "occupancy.yaml", "esdf.nrrd", "trajectory.tum", "timing.csv", "config.yaml"};
 constexpr const char* kOctomap = "octomap.bt";
-
-std::vector<std::string> map_files(const OutputConfig& output) {
-  std::vector<std::string> names = kMapFiles;
-  if (output.wants_octomap()) names.emplace_back(kOctomap);
-  return names;
-}
 
 }  // namespace
 
@@ -141,7 +129,8 @@ void write_trajectory(RunFolder& folder, const ObjectMap& map, const Pose& X_BF)
   if (!covariances.empty()) folder.write("trajectory_covariance.csv", covariances);
 }
 
-std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output) {
+void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output,
+               const std::vector<float>& surface_errors_m) {
   const ObjectMap& map = mapping.map;
   WARETWIN_CHECK(map.volume != nullptr, "a map has a volume");
   const bool upright = map.X_RW.isApprox(Pose::Identity(), 1e-12);
@@ -154,6 +143,8 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
     make_folder(folder.path() / "objects");
     write_object_plys(folder.path() / "objects", mesh_R, objects);
     write_cloud_ply(folder.file("cloud.ply"), mesh_R);
+    folder.remove("surface_error.ply");
+    if (!surface_errors_m.empty()) write_surface_errors(folder.path(), mesh_R.vertices, surface_errors_m);
   }
   if (!upright) folder.write("upright.json", upright_json(map.X_RW));
   write_map_glb(folder.file("map.glb"), mesh, objects);
@@ -172,30 +163,11 @@ std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& map
   const double ceiling = picture_ceiling(mesh);
   scene.mesh = {mesh.vertices, mesh.colours, mesh.triangles};
   scene.labels = mesh.labels;
-  std::vector<ReportPicture> pictures;
-  pictures.push_back({"The map from above, with mapped cuboids" + std::string(scene.truth.empty() ? "" : ", true ones") + " and the path",
-                      draw_from_above(scene, ceiling)});
-  folder.write_png("topdown.png", pictures.back().image);
-  pictures.push_back({"The mapped mesh, objects in colours of their own", draw_oblique(scene, ceiling)});
-  folder.write_png("mesh.png", pictures.back().image);
+  folder.write_png("topdown.png", draw_from_above(scene, ceiling));
+  folder.write_png("mesh.png", draw_oblique(scene, ceiling));
   folder.clear("frames");
   for (const FramePicture& picture : mapping.pictures) folder.write_png("frames/" + picture.name + ".png", picture.image);
-  // The report shows two frames: one early, one late.
-  const auto shown = [&](const std::string& kind, const std::string& caption, std::size_t third) {
-    std::vector<const FramePicture*> all;
-    for (const FramePicture& picture : mapping.pictures) {
-      if (picture.name.ends_with(kind)) all.push_back(&picture);
-    }
-    if (all.empty()) return;
-    const FramePicture& picture = *all[all.size() * third / 3];
-    pictures.push_back({picture.name + ": " + caption, picture.image});
-  };
-  for (const std::size_t third : {std::size_t{1}, std::size_t{2}}) {
-    shown(".colour", "detections, segmented pixels, mapped cuboids", third);
-    shown(".depth", "depth as measured", third);
-    shown(".truth", "true objects, their visible (solid) and whole (dashed) boxes", third);
-  }
-  return pictures;
+  write_frame_log(folder.path(), mapping.kept_frames);
 }
 
 void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const OutputConfig& output) {
@@ -205,69 +177,56 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const 
   scene.truth = result.truth;
   scene.trajectory = result.trajectory;
   scene.true_trajectory = result.true_trajectory;
-  ReportPage page;
-  page.pictures = write_map(folder, result.mapping, std::move(scene), output);
+  static const std::vector<float> kUnknown;
+  write_map(folder, result.mapping, std::move(scene), output, score.surface ? score.surface->distances_m : kUnknown);
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
-  for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md"}) folder.remove(earlier);
+  for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md", "map.json"}) folder.remove(earlier);
   if (!result.detections.empty()) folder.write("detections.jsonl", result.detections);
   if (!result.truth_frames.empty()) folder.write("truth_frames.jsonl", result.truth_frames);
   for (const char* part : {"truth_poses", "truth_poses/cameras", "truth_poses/lasers"}) folder.clear(part);
   for (const auto& [name, poses] : result.sensor_poses) folder.write("truth_poses/" + name, tum_text(poses));
   folder.write("table6.md", table6(score.objects, score.scenario + ", profile " + score.profile));
+  const std::string json = score_json(score);
+  write_report(folder.path(), json);
+  folder.write("score.json", json);
+}
 
-  page.title = "waretwin: " + score.scenario;
-  page.subtitle = "Profile " + score.profile + ", seed " + std::to_string(score.seed) + ", digest " + score.digest;
-  page.score = &score;
-  page.mapped = result.mapped;
-  page.timing_ms = score.timing_ms;
-  std::string stages = "Stages:";
-  for (const auto& [stage, maker] : score.stages) stages += " " + stage + " " + maker + ",";
-  stages.pop_back();
-  page.facts = {stages,
-                std::to_string(score.frames_simulated) + " camera frames, " + std::to_string(score.frames_mapped) + " mapped, " +
-                    std::to_string(score.frames_dropped) + " dropped to keep the mapping rate",
-                text("%.2f times real time", score.realtime_factor) + text(", at most %.0f MB of memory", score.peak_rss_mb)};
-  if (score.trajectory && score.trajectory_aligned) {
-    page.facts.push_back(text("Trajectory error %.3f m rmse", score.trajectory->ate_rmse_m) +
-                         text(", %.3f m at most", score.trajectory->ate_max_m) +
-                         text("; %.3f m rmse after SE(3) alignment", score.trajectory_aligned->ate_rmse_m));
+// What the page of a map says beside the map itself.
+std::string map_json(const MappingResult& mapping, const std::string& source, const std::string& profile) {
+  const ObjectMap& map = mapping.map;
+  nlohmann::ordered_json json = {
+      {"schema", 1}, {"version", kVersion}, {"source", source}, {"profile", profile}, {"digest", digest_of(map)}};
+  if (mapping.X_BL) {
+    json["scans"] = map.trajectory.size();
+  } else {
+    json["frames"] = {{"seen", map.frames_seen},
+                      {"mapped", map.frames.size()},
+                      {"dropped", map.frames_dropped_by_rate},
+                      {"without_pose", map.frames_without_pose}};
+    json["rejected"] = map.rejected;
   }
-  for (const auto& [reason, count] : score.rejected)
-    page.facts.push_back("Not segmented: " + reason + ", " + std::to_string(count) + " times");
-  if (score.motion) {
-    for (const RobotContact& contact : score.motion->contacts) page.facts.push_back("Error: " + contact_text(contact));
-  }
-  page.files = map_files(output);
-  for (const char* name : {"truth.json", "trajectory_truth.tum", "table6.md", "score.json"}) page.files.emplace_back(name);
-  if (!result.detections.empty()) page.files.emplace_back("detections.jsonl");
-  if (!result.truth_frames.empty()) page.files.emplace_back("truth_frames.jsonl");
-  for (const auto& entry : result.sensor_poses) page.files.push_back("truth_poses/" + entry.first);
-  folder.write("report.html", report_html(page));
-  folder.write("score.json", score_json(score));
+  // A recording's name may be in any encoding.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
-  for (const std::string& name : kMapFiles) {
-    if (name != "config.yaml") folder.remove(name);
-  }
-  folder.remove(kOctomap);
+  for (const char* name : {"cuboids.json", "map.glb", "map.ply", "cloud.ply", "map.waretwin", "occupancy.pgm", "occupancy.yaml",
+                           "esdf.nrrd", "timing.csv", "frames.jsonl", "mesh.png", "surface_error.ply", kOctomap})
+    folder.remove(name);
   write_trajectory(folder, mapping.map, *mapping.X_BL);
   MapScene scene;
   scene.trajectory = stamped(mapping.map.trajectory);
-  ReportPage page;
-  page.pictures.push_back({"The vehicle's path from above", draw_from_above(scene, 0.0)});
-  folder.write_png("topdown.png", page.pictures.back().image);
-  page.title = "waretwin: path of " + source;
-  page.subtitle = "Profile " + profile + ", digest " + digest_of(mapping.map);
-  page.facts = {std::to_string(mapping.map.trajectory.size()) + " scans, no camera: the trajectory alone, as poses of the laser (X_WL)"};
-  page.files = {"trajectory.tum", "config.yaml"};
-  if (std::filesystem::exists(folder.path() / "trajectory_covariance.csv")) page.files.emplace_back("trajectory_covariance.csv");
-  folder.write("report.html", report_html(page));
+  folder.write_png("topdown.png", draw_from_above(scene, 0.0));
+  folder.write("map.json", map_json(mapping, source, profile));
+  write_report(folder.path());
 }
 
 void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile,
                    const OutputConfig& output) {
+  // Of a run that had the folder before: the page would show them as this map's.
+  for (const char* of_truth : {"truth.json", "trajectory_truth.tum", "table6.md", "budget.md", "truth_frames.jsonl", "detections.jsonl"})
+    folder.remove(of_truth);
   if (mapping.X_BL) {
     write_laser_log(folder, mapping, source, profile);
     return;
@@ -275,18 +234,9 @@ void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::s
   MapScene scene;
   scene.mapped = listed(mapping.map.objects);
   scene.trajectory = stamped(mapping.map.trajectory);
-  ReportPage page;
-  page.mapped = scene.mapped;
-  page.pictures = write_map(folder, mapping, std::move(scene), output);
-  page.title = "waretwin: map of " + source;
-  page.subtitle = "Profile " + profile + ", digest " + digest_of(mapping.map);
-  page.timing_ms = summarise_stages(mapping.frames);
-  page.facts = {std::to_string(mapping.map.frames_seen) + " camera frames, " + std::to_string(mapping.frames.size()) + " mapped, " +
-                std::to_string(mapping.map.frames_without_pose) + " without a pose"};
-  for (const auto& [reason, count] : mapping.map.rejected)
-    page.facts.push_back("Not segmented: " + reason + ", " + std::to_string(count) + " times");
-  page.files = map_files(output);
-  folder.write("report.html", report_html(page));
+  write_map(folder, mapping, std::move(scene), output);
+  folder.write("map.json", map_json(mapping, source, profile));
+  write_report(folder.path());
 }
 
 }  // namespace waretwin

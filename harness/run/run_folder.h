@@ -7,7 +7,6 @@
 #include <string>
 
 #include "harness/run/closed_loop.h"
-#include "harness/run/report.h"
 #include "mapper/output/output_config.h"
 
 namespace waretwin {
@@ -32,17 +31,18 @@ class RunFolder {
   std::filesystem::path path_;
 };
 
-// All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, pictures of `scene`, which gets the mesh of the map.
-// Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy,
+// All files that need no truth: map, cloud, occupancy, cuboids, trajectory, timing, frames, pictures of `scene`, which gets the mesh of the
+// map. Where the recording's own world is not z up, PLY files and the trajectory are in the recording's world; cuboids, map.glb, occupancy,
 // octomap.bt and map.waretwin are in the map's upright one, and upright.json holds the pose of the upright world in the recording's.
-// Returns the pictures for the report.
-std::vector<ReportPicture> write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output);
+// surface_error.ply holds `surface_errors_m` (one a vertex of the mesh) beside the vertices, where they are known.
+void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, const OutputConfig& output,
+               const std::vector<float>& surface_errors_m = {});
 
 // The same with truth, Table 6, report.html, and score.json at the very end.
 void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const OutputConfig& output);
 
-// What `waretwin map` leaves behind: write_map and report.html. Of a laser log (no camera) it is the trajectory, as poses of the laser
-// (X_WL), its picture, and report.html.
+// What `waretwin map` leaves behind: write_map, map.json (what a score says of a run) and report.html. Of a laser log (no camera) it is the
+// trajectory, as poses of the laser (X_WL), its picture, and report.html.
 void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile,
                    const OutputConfig& output);
 

@@ -85,6 +85,7 @@ SurfaceScore SurfaceMeter::result(const SurfaceMesh& mesh) const {
   std::vector<float> errors = distances(hall, mesh.vertices, kFarthest);
   score.vertices = static_cast<int>(errors.size());
   if (!errors.empty()) {
+    score.distances_m = errors;
     std::sort(errors.begin(), errors.end());
     const auto quantile = [&](double q) {
       return static_cast<double>(errors[static_cast<std::size_t>(std::lround(q * static_cast<double>(errors.size() - 1)))]);

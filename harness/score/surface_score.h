@@ -18,7 +18,8 @@ struct SurfaceScore {
   // Distance of the mesh's vertices to the nearest true surface, as the hall stands at the end (metres; at most 1 m).
   int vertices = 0;
   double mean_m = 0.0, median_m = 0.0, p95_m = 0.0;
-  double share_over_30mm = 0.0;  // of the vertices: ghosts of what moved, sheets at the rims of things, flying pixels
+  double share_over_30mm = 0.0;         // of the vertices: ghosts of what moved, sheets at the rims of things, flying pixels
+  std::vector<float> distances_m = {};  // of each vertex, in the mesh's order
   // Share of the true surface that the mapped frames saw and the mesh has within 3 cm.
   int seen_points = 0;
   double found = 0.0;

@@ -14,6 +14,7 @@
 #include "core/side_by_side.h"
 #include "harness/gate/measures.h"
 #include "harness/gate/score_file.h"
+#include "harness/report/report_file.h"
 #include "harness/run/closed_loop.h"
 #include "harness/score/score_json.h"
 #include "harness/study/study_files.h"
@@ -54,6 +55,7 @@ class StudyRunner {
     summary.verdict = verdict_text(setup_.study, *summary.results);
     summary.folder = folder();
     write_results(folder(), setup_, *summary.results, [this] { check(); });
+    write_report(folder());
     if (!request_.coverage_only) write_file(folder() / "timing.csv", times_);
     return summary;
   }

@@ -3,7 +3,6 @@
 #include <opencv2/core.hpp>
 
 #include "harness/pictures/map_pictures.h"
-#include "harness/run/report.h"
 #include "tests/harness/score_fixtures.h"
 
 namespace waretwin {
@@ -71,20 +70,6 @@ TEST(MapPicture, DrawsCuboidsAndPathsWithoutAMesh) {
     EXPECT_LT(low, 100.0) << "something is drawn";
   }
   EXPECT_FALSE(draw_from_above(MapScene{}, 2.5).empty()) << "an empty map has a picture too";
-}
-
-TEST(Report, IsSelfContainedAndEscapesNames) {
-  ReportPage page;
-  page.title = "a <hall>";
-  page.mapped = {test::object(1, "c&d", 0, 0)};
-  page.pictures = {{"a \"picture\"", cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}};
-  page.files = {"map.glb"};
-  const std::string html = report_html(page);
-  EXPECT_NE(html.find("a &lt;hall&gt;"), std::string::npos);
-  EXPECT_NE(html.find("c&amp;d"), std::string::npos);
-  EXPECT_NE(html.find("data:image/jpeg;base64,/9j/"), std::string::npos) << "JPEG begins with ff d8 ff";
-  EXPECT_EQ(html.find("src=\"http"), std::string::npos);
-  EXPECT_EQ(html.find("<hall>"), std::string::npos);
 }
 
 }  // namespace

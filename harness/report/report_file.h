@@ -1,0 +1,25 @@
+// report.html of a folder, whatever waretwin left in it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace waretwin {
+
+enum class ReportKind { kRun, kStudy, kDataset };
+
+// By the files in it: results.json is a study's, dataset.yaml a set's; score.json, cuboids.json or trajectory.tum a run's or a map's.
+// Throws Error for any other folder, and for a run that did not finish.
+ReportKind report_kind(const std::filesystem::path& folder);
+
+struct ReportSummary {
+  ReportKind kind = ReportKind::kRun;
+  std::uintmax_t bytes = 0;
+  bool plain = false;  // static_page.h: there is no viewer
+};
+
+// Writes report.html in place of an earlier one. `score`: as in run_page, of a run that is about to be complete. Throws Error where the
+// folder is of no known kind, or a file in it is damaged.
+ReportSummary write_report(const std::filesystem::path& folder, const std::string& score = {});
+
+}  // namespace waretwin
