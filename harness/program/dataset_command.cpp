@@ -96,7 +96,7 @@ int dataset(const DatasetOptions& options) {
     std::printf("this shard is done; %d halls of others are missing: the lists are made by whoever finishes last\n", summary.missing_halls);
     return 0;
   }
-  write_report(options.out);
+  write_report(options.out, ReportKind::kDataset);
   std::printf("%d pictures, %d of them without labels\n", summary.images, summary.empty);
   for (std::size_t i = 0; i < summary.classes.size(); ++i)
     std::printf("  %-20s %6d labels\n", summary.classes[i].c_str(), summary.labels[i]);

@@ -22,6 +22,7 @@ struct ReportOptions {
 int report(const ReportOptions& options) {
   options.common.apply();
   // Nothing here is drawn at random or configured: a setting that would be passed over is refused.
+  if (options.common.seed) throw Error("--seed " + std::to_string(*options.common.seed) + ": nothing of a report is drawn at random");
   if (!options.common.set.empty()) throw Error("--set " + options.common.set.front() + ": a report has no configuration keys");
   const ReportKind kind = report_kind(options.folder);
   if (!options.video.empty()) {

@@ -154,7 +154,7 @@ int run(const RunOptions& options) {
             << (options.budget ? ", budget.md)\n" : ")\n");
   const bool got_worse = baseline && worse_than(*baseline, tolerances, options, result.score, *folder);
   // Once more, with budget.md and baseline.md.
-  if (options.budget || baseline) write_report(folder->path());
+  if (options.budget || baseline) write_report(folder->path(), ReportKind::kRun);
   if (!result.score.motion || result.score.motion->contacts.empty()) return got_worse ? 1 : 0;
   // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
   for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));

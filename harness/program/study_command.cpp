@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
@@ -38,15 +40,19 @@ int run(const StudyOptions& options) {
   StudySummary summary;
   {
     const InterruptWatch watch;
-    Progress bar("study", options.common.quiet);
+    // A bar a stage.
+    std::optional<Progress> bar;
+    std::string stage;
     StudyHooks hooks;
     hooks.check = [&] { watch.check("the same command goes on with what is not done"); };
     hooks.progress = [&](const StudyProgress& now) {
-      bar.update(now.share, now.stage + " " + std::to_string(now.number) + " of " + std::to_string(now.of) + ", " + now.what);
+      if (!bar || now.stage != stage) bar.emplace("study, " + now.stage, options.common.quiet);
+      stage = now.stage;
+      bar->update(now.share, std::to_string(now.number) + " of " + std::to_string(now.of) + ", " + now.what);
     };
     if (options.preview) {
       const int drawn = draw_previews(request, hooks);
-      bar.update(1.0, "");
+      bar.reset();
       std::printf("%d candidates drawn: %s/preview.png and preview/\n", drawn, options.out.c_str());
       return 0;
     }

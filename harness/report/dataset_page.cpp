@@ -25,7 +25,7 @@ constexpr std::size_t kSideBins = 20, kVisibleBins = 10;
 Json box_json(const cv::Rect& box) { return {box.x, box.y, box.width, box.height}; }
 
 std::size_t bin(double share, std::size_t bins) {
-  return std::min(bins - 1, static_cast<std::size_t>(std::max(0.0, share) * static_cast<double>(bins)));
+  return static_cast<std::size_t>(std::clamp(share, 0.0, 0.999999) * static_cast<double>(bins));
 }
 
 struct ClassCounts {
@@ -93,18 +93,23 @@ PageData dataset_page(const fs::path& folder) {
   for (int number = 0; number < halls; ++number) {
     const HallRecord hall = read_hall_record(folder / record_name(number));
     for (const ImageRecord& image : hall.images) {
+      const fs::path name = image.name;
+      if (name.empty() || name != name.filename() || name == "." || name == "..")
+        throw Error(folder / record_name(number), "names a picture '" + image.name + "'; expected a plain name");
+      if (image.intrinsics.width < 1 || image.intrinsics.height < 1)
+        throw Error(folder / record_name(number), image.name + " has no size; expected at least one pixel");
       const double area = static_cast<double>(image.intrinsics.width) * image.intrinsics.height;
       for (const ImageLabel& label : image.labels.labels) {
         const auto k = static_cast<std::size_t>(label.class_index);
         if (k >= counts.size()) throw Error(folder / record_name(number), "names class " + std::to_string(k) + ", manifest.json has fewer");
         ++counts[k].labels;
-        ++counts[k].sides[bin(std::sqrt(label.box.area() / area), kSideBins)];
+        ++counts[k].sides[bin(std::sqrt(std::max(0.0, static_cast<double>(label.box.width) * label.box.height) / area), kSideBins)];
         ++counts[k].visible[bin(label.visible, kVisibleBins)];
       }
       // Evenly over the whole set.
       if (static_cast<std::int64_t>(json["images"].size()) * images > static_cast<std::int64_t>(image.index) * shown) continue;
       if (static_cast<int>(json["images"].size()) >= shown) continue;
-      const std::string block = "picture." + image.name;
+      const std::string block = "picture." + std::to_string(page.blocks.size());
       page.blocks[block] = thumbnail(folder / "images" / (image.name + ".jpg"), image.intrinsics.width);
       json["images"].push_back(image_json(image, hall, block));
     }

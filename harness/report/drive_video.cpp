@@ -242,6 +242,10 @@ VideoSummary write_drive_video(const fs::path& folder, const fs::path& file, con
       if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
     }
     writer.release();
+    // The writer does not say when the disk is full.
+    cv::VideoCapture again(temporary.string());
+    if (static_cast<int>(again.get(cv::CAP_PROP_FRAME_COUNT)) != summary.frames)
+      throw Error(file, "cannot be written whole: " + std::to_string(summary.frames) + " frames were drawn, fewer can be read back");
   });
   return summary;
 }

@@ -138,11 +138,16 @@ LoggedFrame logged_frame(int number, const Mapper::FrameResult& result, const Ob
   return frame;
 }
 
+std::optional<int> FrameLog::turn_of(const std::string& sensor) {
+  const int turn = turns_[sensor]++;
+  return turn % step_ == 0 ? std::optional(turn) : std::nullopt;
+}
+
 void FrameLog::add(LoggedFrame frame) {
   frames_.push_back(std::move(frame));
   while (frames_.size() > most_) {
     step_ *= 2;
-    std::erase_if(frames_, [this](const LoggedFrame& f) { return f.number % step_ != 0; });
+    std::erase_if(frames_, [this](const LoggedFrame& f) { return f.turn % step_ != 0; });
   }
 }
 

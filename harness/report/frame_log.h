@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct LoggedDetection {
 
 struct LoggedFrame {
   int number = 0;  // counts mapped frames, from 0
+  int turn = 0;    // counts this camera's, from 0; not in the file
   Stamp stamp = 0;
   std::string sensor;
   Intrinsics intrinsics;                                  // of the whole picture; the small ones show the same
@@ -35,18 +38,20 @@ struct LoggedFrame {
 // Small pictures of this frame and its record. `number` counts mapped frames.
 LoggedFrame logged_frame(int number, const Mapper::FrameResult& result, const ObjectList& objects, const StreamInfo::Camera& camera);
 
-// Which frames of a drive of unknown length are kept: every step-th; when there are more than `most`, every second one goes and the step
-// doubles. So memory stays flat, and never fewer than half of `most` are kept of a longer drive.
+// Which frames of a drive of unknown length are kept: every step-th of each camera; when there are more than `most`, every second one goes
+// and the step doubles. So memory stays flat, and never fewer than about half of `most` are kept of a longer drive.
 class FrameLog {
  public:
   explicit FrameLog(std::size_t most = 150) : most_(most) {}
-  bool wants(int number) const { return number % step_ == 0; }
+  // Counts a mapped frame of this camera; its turn where it is to be kept, nothing where not.
+  std::optional<int> turn_of(const std::string& sensor);
   void add(LoggedFrame frame);
   std::vector<LoggedFrame> take() { return std::move(frames_); }
 
  private:
   std::size_t most_;
   int step_ = 1;
+  std::map<std::string, int> turns_;  // by camera
   std::vector<LoggedFrame> frames_;
 };
 

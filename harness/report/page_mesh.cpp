@@ -182,6 +182,8 @@ std::vector<std::uint8_t> first_seen(const PageMesh& mesh, const std::vector<See
       if (cells[i].second <= z * (1.0f + kSlope) + kBehind) seen[i] = static_cast<std::uint8_t>(c);
     }
   }
+  // What no kept frame shows (one in between saw it, or an earlier drive) is there at the end.
+  if (!cameras.empty()) std::replace(seen.begin(), seen.end(), std::uint8_t{255}, static_cast<std::uint8_t>(cameras.size() - 1));
   return seen;
 }
 

@@ -60,7 +60,8 @@ struct SeeingCamera {
 };
 
 // Of each vertex the first camera in the list that has it in view and within range, with no vertex far before it in the same direction (a
-// coarse depth image of the vertices decides); 255 where none has. At most 255 cameras.
+// coarse depth image of the vertices decides); the last camera where none has, for the whole surface is there at the end. 255 without
+// cameras, of which there are at most 255.
 std::vector<std::uint8_t> first_seen(const PageMesh& mesh, const std::vector<SeeingCamera>& cameras);
 
 }  // namespace waretwin

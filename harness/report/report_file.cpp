@@ -19,17 +19,18 @@ ReportKind report_kind(const fs::path& folder) {
   const auto has = [&](const char* name) { return fs::is_regular_file(folder / name, error); };
   if (has("results.json")) return ReportKind::kStudy;
   if (has("dataset.yaml")) return ReportKind::kDataset;
-  if (has("score.json") && has("cuboids.json")) return ReportKind::kRun;
+  if ((has("score.json") && has("cuboids.json")) || has("map.json")) return ReportKind::kRun;
   if (has("truth.json")) throw Error(folder, "has truth.json and no score.json: the run did not finish; expected a finished run");
-  if (has("cuboids.json") || has("trajectory.tum")) return ReportKind::kRun;
+  if (has("cuboids.json") || has("trajectory.tum"))
+    throw Error(folder, "has neither score.json nor map.json: the run or map did not finish, or an earlier version made it");
   throw Error(folder,
-              "is not of a run, a study or a dataset; expected score.json and cuboids.json (run), cuboids.json or trajectory.tum (map), "
+              "is not of a run, a study or a dataset; expected score.json and cuboids.json (run), map.json (map), "
               "results.json (study) or dataset.yaml (dataset) in it");
 }
 
-ReportSummary write_report(const fs::path& folder, const std::string& score) {
+ReportSummary write_report(const fs::path& folder, std::optional<ReportKind> kind, const std::string& score) {
   ReportSummary summary;
-  summary.kind = score.empty() ? report_kind(folder) : ReportKind::kRun;
+  summary.kind = kind ? *kind : report_kind(folder);
   const PageData data = summary.kind == ReportKind::kStudy     ? study_page(folder)
                         : summary.kind == ReportKind::kDataset ? dataset_page(folder)
                                                                : run_page(folder, score);

@@ -64,7 +64,8 @@ Stamp add_paths(PageData& page, const fs::path& folder, const Pose& X_UR) {
   const std::vector<StampedPose> poses = read_trajectory(folder / "trajectory.tum").poses;
   std::vector<StampedPose> truth;
   if (has(folder / "trajectory_truth.tum")) truth = read_trajectory(folder / "trajectory_truth.tum").poses;
-  const bool together = truth.size() == poses.size();
+  const bool together = std::equal(truth.begin(), truth.end(), poses.begin(), poses.end(),
+                                   [](const StampedPose& a, const StampedPose& b) { return a.stamp == b.stamp; });
   const Stamp start = poses.front().stamp;
   const auto row = [&](const StampedPose& point) {
     const Pose X = X_UR * point.X_WB;

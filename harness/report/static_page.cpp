@@ -193,11 +193,16 @@ std::string study_parts(const Json& study) {
   std::vector<std::string> heading = {"candidate", "state"};
   for (const Json& factor : get(study, "factors")) heading.push_back(word(get(factor, "name")));
   for (const Json& measure : measures) heading.push_back(word(get(measure, "name")));
-  std::string html = "<h2>Candidates</h2>\n<table>\n" + row(heading, "th");
+  std::string html;
+  if (get(study, "verdict").is_string()) html += "<p><b>Best</b>: " + word(get(study, "verdict")) + "</p>\n";
+  html += "<h2>Candidates</h2>\n<table>\n" + row(heading, "th");
   for (const Json& candidate : get(study, "candidates")) {
     const bool best = get(candidate, "number") == get(study, "best");
-    std::vector<std::string> cells = {(best ? "<b>" : "") + word(get(candidate, "name")) + (best ? " (best)</b>" : ""),
-                                      word(get(candidate, "state"))};
+    std::string state = word(get(candidate, "state"));
+    if (get(candidate, "broken").is_array()) {
+      for (const Json& text : get(candidate, "broken")) state += "; " + word(text);
+    }
+    std::vector<std::string> cells = {(best ? "<b>" : "") + word(get(candidate, "name")) + (best ? " (best)</b>" : ""), state};
     for (const Json& factor : get(study, "factors")) {
       cells.push_back(word(get(get(candidate, "values"), get(factor, "name").get<std::string>().c_str())));
     }

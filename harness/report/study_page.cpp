@@ -33,6 +33,8 @@ void expect_shape(const fs::path& file, const Json& study) {
   };
   const auto at = [](const Json& json, const char* key) { return json.contains(key) ? json.at(key) : Json(nullptr); };
   expect(study.is_object() && at(study, "schema") == kStudySchema, "schema", kStudySchema);
+  const Json pareto = at(study, "pareto");
+  expect(pareto.is_null() || (pareto.is_object() && at(pareto, "measures").is_array()), "pareto", "measures and candidates");
   for (const char* key : {"factors", "measures", "candidates"}) {
     expect(at(study, key).is_array(), key, "a list");
     for (const Json& entry : study[key]) expect(entry.is_object() && at(entry, "name").is_string(), key, "entries with a name");
@@ -45,6 +47,10 @@ void expect_shape(const fs::path& file, const Json& study) {
            "run, screened_out or refused");
     expect(at(candidate, "values").is_object(), "candidates, " + name + ", values", "a value for each factor");
     if (state == "run") expect(at(candidate, "measures").is_object(), "candidates, " + name + ", measures", "a value for each measure");
+    const Json runs = at(candidate, "runs");
+    expect(runs.is_null() ||
+               (runs.is_array() && std::all_of(runs.begin(), runs.end(), [&](const Json& run) { return at(run, "measures").is_object(); })),
+           "candidates, " + name + ", runs", "drives with measures");
   }
 }
 
@@ -53,11 +59,12 @@ class Pictures {
   Pictures(PageData& page, const fs::path& folder) : page_(page), folder_(folder) {}
 
   // The block's name; null where there is no such picture or no room for it.
-  Json add(const fs::path& name) {
+  Json add(const fs::path& name) { return add(name, folder_); }
+  Json add(const fs::path& name, const fs::path& folder) {
     std::error_code error;
-    if (!is_plain(name) || page_.blocks.size() >= kMaxPictures || !fs::is_regular_file(folder_ / name, error)) return nullptr;
-    cv::Mat image = cv::imread((folder_ / name).string(), cv::IMREAD_COLOR);
-    if (image.empty()) throw Error(folder_ / name, "is no picture");
+    if (!is_plain(name) || page_.blocks.size() >= kMaxPictures || !fs::is_regular_file(folder / name, error)) return nullptr;
+    cv::Mat image = cv::imread((folder / name).string(), cv::IMREAD_COLOR);
+    if (image.empty()) throw Error(folder / name, "is no picture");
     if (image.cols > kWidth) {
       const double scale = static_cast<double>(kWidth) / image.cols;
       cv::resize(image, image, {}, scale, scale, cv::INTER_AREA);
@@ -98,17 +105,22 @@ PageData study_page(const fs::path& folder) {
   json["facts"] = {std::to_string(study["candidates"].size()) + " candidates: " + std::to_string(states[0]) + " run, " +
                    std::to_string(states[1]) + " screened out, " + std::to_string(states[2]) + " refused"};
   json["pictures"] = Json::array();
-  json["files"] = {"results.json"};
-  if (study.contains("files") && study["files"].is_array()) {
-    for (const Json& name : study["files"]) {
-      std::error_code error;
-      if (name.is_string() && name != "results.json" && is_plain(name.get<std::string>()) &&
-          fs::is_regular_file(folder / name.get<std::string>(), error))
-        json["files"].push_back(name);
-    }
+  json["files"] = Json::array();
+  std::error_code error;
+  for (const char* name : {"study.md", "results.csv", "runs.csv", "results.json", "timing.csv"}) {
+    if (fs::is_regular_file(folder / name, error)) json["files"].push_back(name);
   }
 
   Pictures pictures(page, folder);
+  // For the plain page; the viewer draws its own.
+  std::vector<std::string> plots = {"pareto"};
+  if (study.contains("best_by") && study["best_by"].is_string()) plots.push_back("effects-" + study["best_by"].get<std::string>());
+  for (const std::string& plot : plots) {
+    const Json block = pictures.add(fs::path("plots") / (plot + ".png"));
+    if (!block.is_null()) json["pictures"].push_back({{"caption", plot}, {"block", block}});
+  }
+  // What coverage alone says lies beside the previews, in a folder of its own.
+  const fs::path previews = fs::is_directory(folder / "preview", error) ? folder : folder.parent_path();
   std::vector<Json*> order;
   for (Json& candidate : study["candidates"]) order.push_back(&candidate);
   const auto rank = [&](const Json* candidate) {
@@ -120,7 +132,7 @@ PageData study_page(const fs::path& folder) {
   std::stable_sort(order.begin(), order.end(), [&](const Json* a, const Json* b) { return rank(a) < rank(b); });
   for (Json* candidate : order) {
     (*candidate)["coverage"] = Json::array();
-    (*candidate)["preview"] = pictures.add(fs::path("preview") / (candidate->at("name").get<std::string>() + ".png"));
+    (*candidate)["preview"] = pictures.add(fs::path("preview") / (candidate->at("name").get<std::string>() + ".png"), previews);
     if (!candidate->contains("coverage_maps") || !(*candidate)["coverage_maps"].is_array()) continue;
     for (const Json& name : (*candidate)["coverage_maps"]) {
       if (!name.is_string()) continue;

@@ -78,7 +78,11 @@ MappingResult map_stream(SensorStream& stream, const MapperConfig& config, Stage
     const int index = static_cast<int>(source_times.size()) - 1;
     if (hooks.on_frame) hooks.on_frame(frame);
     const StreamInfo::Camera& camera = info.cameras.at(frame.frame.sensor);
-    if (hooks.pictures && log.wants(index)) log.add(logged_frame(index, frame, mapper.map().objects, camera));
+    if (const std::optional<int> turn = hooks.pictures ? log.turn_of(frame.frame.sensor) : std::nullopt) {
+      LoggedFrame kept = logged_frame(index, frame, mapper.map().objects, camera);
+      kept.turn = *turn;
+      log.add(std::move(kept));
+    }
     if (hooks.pictures && album.wants(index)) {
       const double far_m = std::min(camera.depth_max_m, 10.0);
       std::vector<FramePicture> pictures = {{".colour", draw_frame(frame, mapper.map().objects, camera.intrinsics)},

@@ -64,7 +64,7 @@ constexpr const char* kOctomap = "octomap.bt";
 
 RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
   make_folder(path);
-  for (const char* name : {"score.json", "report.html", "baseline.md"}) remove(name);
+  for (const char* name : {"score.json", "map.json", "report.html", "baseline.md"}) remove(name);
 }
 
 void RunFolder::remove(const std::string& name) {
@@ -146,6 +146,7 @@ void write_map(RunFolder& folder, const MappingResult& mapping, MapScene scene, 
     folder.remove("surface_error.ply");
     if (!surface_errors_m.empty()) write_surface_errors(folder.path(), mesh_R.vertices, surface_errors_m);
   }
+  folder.remove("upright.json");  // of an earlier map, which would turn this one
   if (!upright) folder.write("upright.json", upright_json(map.X_RW));
   write_map_glb(folder.file("map.glb"), mesh, objects);
   save_map(folder.file("map.waretwin"), objects, *map.volume, map.frames_before + static_cast<int>(map.frames.size()));
@@ -181,15 +182,22 @@ void write_closed_loop(RunFolder& folder, const ClosedLoopResult& result, const 
   write_map(folder, result.mapping, std::move(scene), output, score.surface ? score.surface->distances_m : kUnknown);
   folder.write("truth.json", truth_json(result.truth));
   folder.write("trajectory_truth.tum", tum_text(result.true_trajectory));
-  for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md", "map.json"}) folder.remove(earlier);
+  for (const char* earlier : {"truth_frames.jsonl", "detections.jsonl", "budget.md"}) folder.remove(earlier);
   if (!result.detections.empty()) folder.write("detections.jsonl", result.detections);
   if (!result.truth_frames.empty()) folder.write("truth_frames.jsonl", result.truth_frames);
   for (const char* part : {"truth_poses", "truth_poses/cameras", "truth_poses/lasers"}) folder.clear(part);
   for (const auto& [name, poses] : result.sensor_poses) folder.write("truth_poses/" + name, tum_text(poses));
   folder.write("table6.md", table6(score.objects, score.scenario + ", profile " + score.profile));
   const std::string json = score_json(score);
-  write_report(folder.path(), json);
+  // A page that cannot be made (a viewer that is none) costs no drive its score.
+  std::optional<Error> no_page;
+  try {
+    write_report(folder.path(), ReportKind::kRun, json);
+  } catch (const Error& error) {
+    no_page = error;
+  }
   folder.write("score.json", json);
+  if (no_page) throw Error(folder.path(), "is complete but for its report.html: " + std::string(no_page->what()));
 }
 
 // What the page of a map says beside the map itself.
@@ -212,14 +220,14 @@ std::string map_json(const MappingResult& mapping, const std::string& source, co
 
 void write_laser_log(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile) {
   for (const char* name : {"cuboids.json", "map.glb", "map.ply", "cloud.ply", "map.waretwin", "occupancy.pgm", "occupancy.yaml",
-                           "esdf.nrrd", "timing.csv", "frames.jsonl", "mesh.png", "surface_error.ply", kOctomap})
+                           "esdf.nrrd", "timing.csv", "frames.jsonl", "mesh.png", "surface_error.ply", "upright.json", kOctomap})
     folder.remove(name);
   write_trajectory(folder, mapping.map, *mapping.X_BL);
   MapScene scene;
   scene.trajectory = stamped(mapping.map.trajectory);
   folder.write_png("topdown.png", draw_from_above(scene, 0.0));
   folder.write("map.json", map_json(mapping, source, profile));
-  write_report(folder.path());
+  write_report(folder.path(), ReportKind::kRun);
 }
 
 void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::string& source, const std::string& profile,
@@ -236,7 +244,7 @@ void write_mapping(RunFolder& folder, const MappingResult& mapping, const std::s
   scene.trajectory = stamped(mapping.map.trajectory);
   write_map(folder, mapping, std::move(scene), output);
   folder.write("map.json", map_json(mapping, source, profile));
-  write_report(folder.path());
+  write_report(folder.path(), ReportKind::kRun);
 }
 
 }  // namespace waretwin

@@ -55,7 +55,7 @@ class StudyRunner {
     summary.verdict = verdict_text(setup_.study, *summary.results);
     summary.folder = folder();
     write_results(folder(), setup_, *summary.results, [this] { check(); });
-    write_report(folder());
+    write_report(folder(), ReportKind::kStudy);
     if (!request_.coverage_only) write_file(folder() / "timing.csv", times_);
     return summary;
   }

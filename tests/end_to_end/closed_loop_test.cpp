@@ -111,6 +111,18 @@ TEST(ClosedLoop, FindsTheConveyorsWithItsOwnDetector) {
   EXPECT_EQ(read_file(folder.path() / "1/detections.jsonl"), read_file(folder.path() / "2/detections.jsonl"));
 }
 
+TEST(ClosedLoop, SaysWhatWasNotMeasured) {
+  const TemporaryFolder folder;
+  const std::string quick = "--detector none --frames 6 --set sensors.cameras.camera.rate_hz=2 --set simulation.colour=false ";
+  const Json laser = run(quick + "--set extras.surface=false --set extras.depth=false --set extras.visible_share=false", folder.path());
+  EXPECT_EQ(laser["trajectory"]["unlocalised_share"], 0.0);
+  EXPECT_TRUE(laser["surface"].is_null() && laser["depth"].is_null());
+  EXPECT_EQ(laser["summary"]["truth"], 4);  // all are taken for seen
+  const Json odometry = run(quick + "--poses odometry", folder.path());
+  EXPECT_EQ(odometry["trajectory"]["unlocalised_share"], 1.0);
+  EXPECT_EQ(odometry["summary"]["truth"], 0);  // after six frames
+}
+
 TEST(ClosedLoop, ChangesWithTheSeedOnly) {
   const TemporaryFolder folder;
   const std::string options = "--profile paper --detector truth --frames 16 ";

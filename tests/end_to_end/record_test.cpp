@@ -125,6 +125,23 @@ TEST(Record, IsTheSameAtAnyNumberOfThreadsAndMapsWithoutItsTruth) {
   EXPECT_EQ(digest_in(with.out), digest_in(without.out));
 }
 
+// The vehicle stands in its own sensors' view, on wheels, with a bracket that is off: what the mapper leaves out is in the recording, too.
+TEST(Record, MapsAsTheRunWithTheVehicleInView) {
+  const TemporaryFolder folder;
+  const std::string vehicle =
+      "--frames 6 --set robot.model=vehicle.glb --set sensors.cameras.camera.rate_hz=2 --set "
+      "sensors.cameras.camera.mount.bracket.angle_sigma_deg=0.3";
+  record(vehicle, folder.path() / "drive");
+  const std::string map = " --quiet --detector none --out ";
+  const auto mapped = test::waretwin("map " + in_quotes(folder.path() / "drive") + map + in_quotes(folder.path() / "map"));
+  const auto run = test::waretwin("run " + agiprobot() + map + in_quotes(folder.path() / "run") + " " + vehicle);
+  const auto without =
+      test::waretwin("run " + agiprobot() + map + in_quotes(folder.path() / "bare") + " --frames 6 --set sensors.cameras.camera.rate_hz=2");
+  EXPECT_EQ(digest_in(mapped.out), digest_in(run.out)) << mapped.err << run.err;
+  EXPECT_NE(digest_in(run.out), digest_in(without.out));
+  EXPECT_NE(read_file(folder.path() / "drive/recording.yaml").find("own_body: [-0.4"), std::string::npos);
+}
+
 TEST(Record, ReplacesOnlyWhatItMade) {
   const TemporaryFolder folder;
   const fs::path drive = folder.path() / "drive";

@@ -43,12 +43,28 @@ TEST(Report, IsTheSameWhenItIsMadeAgainFromTheFolder) {
   EXPECT_EQ(read_file(out / "report.html").find("<script"), std::string::npos);
 }
 
+TEST(Report, CostsNoDriveItsScore) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  make_folder(out);
+  write_file(out / "upright.json", "{}");  // of an earlier map of a recording whose y pointed down
+  const auto result = test::waretwin(
+      "run " + test::agiprobot() + " --out " + in_quotes(out) + " --quiet --detector none --frames 2 --set simulation.colour=false",
+      "WARETWIN_VIEWER=/no/such/page");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("complete but for its report.html"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::exists(out / "score.json"));
+  EXPECT_FALSE(fs::exists(out / "upright.json"));
+  EXPECT_EQ(test::waretwin("report " + in_quotes(out)).exit_code, 0);
+}
+
 TEST(Report, RefusesWhatItCannotShow) {
   const TemporaryFolder folder;
   const auto report = [&](const std::string& more) { return test::waretwin("report " + in_quotes(folder.path()) + more); };
   EXPECT_ONE_LINE(test::waretwin("report " + in_quotes(folder.path() / "none")), "does not exist");
   EXPECT_ONE_LINE(report(""), "expected score.json");
   EXPECT_ONE_LINE(report(" --set a=b"), "no configuration keys");
+  EXPECT_ONE_LINE(report(" --seed 3"), "--seed 3");
   EXPECT_ONE_LINE(test::waretwin("report"), "DIR");
   write_file(folder.path() / "results.json", "{}");
   EXPECT_ONE_LINE(report(""), "schema");

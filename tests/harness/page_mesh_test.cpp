@@ -112,8 +112,8 @@ TEST(FirstSeen, SaysWhichCameraHadAVertexInViewFirst) {
   SeeingCamera camera{Pose::Identity(), 100, 100, 64, 48, 128, 96, 5.0};
   SeeingCamera aside = camera;
   aside.X_WC.translation().x() = 5.0;
-  EXPECT_EQ(first_seen(mesh, {camera, aside}), (std::vector<std::uint8_t>{0, 255, 255, 1, 255}));
-  EXPECT_EQ(first_seen(mesh, {aside, camera}), (std::vector<std::uint8_t>{1, 255, 255, 0, 255}));
+  EXPECT_EQ(first_seen(mesh, {camera, aside}), (std::vector<std::uint8_t>{0, 1, 1, 1, 1}));
+  EXPECT_EQ(first_seen(mesh, {aside, camera}), (std::vector<std::uint8_t>{1, 1, 1, 0, 1}));
   EXPECT_EQ(first_seen(mesh, {}), std::vector<std::uint8_t>(5, 255));
 }
 

@@ -72,9 +72,12 @@ TEST(FrameLog, KeepsFramesSpreadOverADriveOfAnyLength) {
   for (const int length : {1, 149, 150, 151, 700, 5000}) {
     FrameLog log;
     for (int i = 0; i < length; ++i) {
+      const std::optional<int> turn = log.turn_of("camera");
+      if (!turn) continue;
       LoggedFrame few;
       few.number = i;
-      if (log.wants(i)) log.add(std::move(few));
+      few.turn = *turn;
+      log.add(std::move(few));
     }
     const std::vector<LoggedFrame> frames = log.take();
     EXPECT_LE(frames.size(), 150u);
@@ -84,6 +87,24 @@ TEST(FrameLog, KeepsFramesSpreadOverADriveOfAnyLength) {
     for (std::size_t i = 1; i < frames.size(); ++i) EXPECT_EQ(frames[i].number - frames[i - 1].number, step);
     EXPECT_GT(frames.back().number + step, length - 1) << "to the end";
   }
+}
+
+TEST(FrameLog, KeepsFramesOfEveryCamera) {
+  FrameLog log;
+  for (int i = 0; i < 1000; ++i) {
+    LoggedFrame few;
+    few.number = i;
+    few.sensor = i % 2 == 0 ? "front" : "rear";
+    const std::optional<int> turn = log.turn_of(few.sensor);
+    if (!turn) continue;
+    few.turn = *turn;
+    log.add(std::move(few));
+  }
+  std::map<std::string, int> counts;
+  for (const LoggedFrame& kept : log.take()) ++counts[kept.sensor];
+  EXPECT_EQ(counts["front"], counts["rear"]);
+  EXPECT_GE(counts["front"], 37);
+  EXPECT_LE(counts["front"], 75);
 }
 
 TEST(FrameLog, ComesBackFromDisk) {
@@ -225,8 +246,8 @@ Json small_study() {
      {"number":1,"name":"c001","values":{"height":"high"},"state":"run","feasible":true,"pareto":true,
       "measures":{"mean_iou3d":{"mean":0.8,"low":0.7,"high":0.9,"difference":{"mean":0.1,"low":0.0,"high":0.2}},"rms":{"mean":0.1,"low":0,"high":1}},
       "coverage_maps":["coverage/gone.png"]},
-     {"number":2,"name":"c002","values":{"height":3},"state":"refused","why":"height < 2 does not hold"}],
-    "pareto":{"measures":["mean_iou3d","rms"],"candidates":[1]},"effects":[],"files":["study.md","gone.md","../x"]})");
+     {"number":2,"name":"c002","values":{"height":3},"state":"refused","feasible":false,"broken":["height < 2 does not hold: 3"]}],
+    "pareto":{"measures":["mean_iou3d","rms"],"candidates":[1]},"verdict":"c001 it is","effects":[]})");
 }
 
 TEST(StudyPage, TakesPicturesThatAreThereAndNoOthers) {
@@ -247,7 +268,13 @@ TEST(StudyPage, TakesPicturesThatAreThereAndNoOthers) {
   EXPECT_TRUE(candidates[0]["preview"].is_null());
   const std::string preview = page.blocks.at(candidates[1]["preview"].get<std::string>());
   EXPECT_LE(cv::imdecode(std::vector<unsigned char>(preview.begin(), preview.end()), cv::IMREAD_COLOR).cols, 520);
-  EXPECT_EQ(page.json["files"], Json({"results.json", "study.md"}));
+  EXPECT_EQ(page.json["files"], Json({"study.md", "results.json"}));
+  const std::string plain = static_page(page, study);
+  for (const char* text : {"c001 it is", "height &lt; 2 does not hold: 3"}) EXPECT_NE(plain.find(text), std::string::npos) << text;
+  // Coverage alone lies in a folder of its own, beside the previews.
+  make_folder(study / "screening");
+  write_file(study / "screening/results.json", small_study().dump());
+  EXPECT_FALSE(study_page(study / "screening").json["study"]["candidates"][1]["preview"].is_null());
 }
 
 TEST(StudyPage, SaysWhichKeyIsWrong) {
@@ -264,6 +291,8 @@ TEST(StudyPage, SaysWhichKeyIsWrong) {
   expect_said([](Json& s) { s["measures"] = 3; }, "measures");
   expect_said([](Json& s) { s["candidates"][1]["state"] = "maybe"; }, "c001, state");
   expect_said([](Json& s) { s["candidates"][0].erase("measures"); }, "c000, measures");
+  expect_said([](Json& s) { s["candidates"][0]["runs"] = Json::array({Json::object()}); }, "c000, runs");
+  expect_said([](Json& s) { s["pareto"] = true; }, "pareto");
   write_file(folder.path() / "results.json", "nothing");
   EXPECT_ERROR(study_page(folder.path()), "results.json");
 }
@@ -334,7 +363,10 @@ TEST(ReportKind, IsKnownByTheFiles) {
   write_file(dir / "file", "");
   EXPECT_ERROR(report_kind(dir / "file"), "no folder");
   write_file(dir / "trajectory.tum", "");
+  EXPECT_ERROR(report_kind(dir), "neither score.json nor map.json");
+  write_file(dir / "map.json", "");
   EXPECT_EQ(report_kind(dir), ReportKind::kRun) << "of a laser log";
+  fs::remove(dir / "map.json");
   write_file(dir / "truth.json", "");
   EXPECT_ERROR(report_kind(dir), "did not finish");
   write_file(dir / "score.json", "");

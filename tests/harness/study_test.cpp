@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/report/study_page.h"
 #include "harness/run/closed_loop.h"
 #include "harness/study/preview.h"
 #include "tests/support/expect_error.h"
@@ -68,6 +69,10 @@ TEST_F(Study, LeavesTablesPlotsAndMaps) {
   EXPECT_EQ(results("out").find("wall"), std::string::npos);  // no times
   for (const char* name : {"results.csv", "runs.csv", "study.md", "timing.csv", "coverage/c000-room.png"})
     EXPECT_TRUE(fs::exists(path("out") / name)) << name;
+  const PageData page = study_page(path("out"));
+  EXPECT_FALSE(page.json["study"]["candidates"][0]["coverage"].empty());
+  EXPECT_EQ(page.json["files"].size(), 5u);
+  EXPECT_TRUE(fs::exists(path("out/report.html")));
   const std::string csv = read_file(path("out/results.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
   const std::string head = csv.substr(0, csv.find('\n')), row = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1));

@@ -16,6 +16,7 @@ assert.equal(await page.locator('.canvas').count(), 0);
 await page.screenshot({ path: shotPath('still') });
 
 // Without colour pictures, boxes are over the depth.
+await page.locator('input.time').focus();
 await page.keyboard.press('Home');
 const before = await page.locator('.frames img.colour').getAttribute('src');
 assert.ok(before.startsWith('data:image/jpeg'));
@@ -23,6 +24,17 @@ await page.keyboard.press('ArrowRight');
 assert.notEqual(await page.locator('.frames img.colour').getAttribute('src'), before);
 await page.locator('tbody tr[tabindex]').first().click();
 assert.ok(await page.locator('.details').isVisible());
+// Keys that need no 3D.
+await page.keyboard.press('Escape');
+assert.ok(!(await page.locator('.details').isVisible()));
+await page.keyboard.press('n');
+assert.ok(await page.locator('.details').isVisible());
+assert.equal(await page.locator('tr.chosen').count(), 1);
+await page.keyboard.press('b');
+assert.ok(!(await page.locator('.frames .boxes').isVisible()));
+assert.ok(!(await page.locator('#show-boxes').isChecked()));
+await page.locator('#show-boxes').check();
+assert.ok(await page.locator('.frames .boxes').isVisible());
 // Browsers themselves say that WebGL is off; nothing else may be wrong.
 assert.deepEqual(problems.filter((text) => !/WebGL/i.test(text)), []);
 

@@ -69,25 +69,26 @@ export interface DetectionFigures {
   fn: number;
 }
 
+// score.json; one of another version may lack parts, and the page then shows what there is.
 export interface Score {
   scenario: string;
   profile: string;
   seed: number;
   digest: string;
-  objects: ScoredObject[];
-  summary: Summary;
-  objects_aligned: ScoredObject[] | null;
-  summary_aligned: Summary | null;
-  alignment: { x_m: number; y_m: number; yaw_deg: number } | null;
-  explanations: { truth_id: number | null; map_id: number | null; text: string }[];
-  detection: (DetectionFigures & {
+  objects?: ScoredObject[];
+  summary?: Partial<Summary>;
+  objects_aligned?: ScoredObject[] | null;
+  summary_aligned?: Partial<Summary> | null;
+  alignment?: { x_m: number; y_m: number; yaw_deg: number } | null;
+  explanations?: { truth_id: number | null; map_id: number | null; text: string }[];
+  detection?: (DetectionFigures & {
     frames: number;
     match_iou: number;
-    classes: DetectionFigures[];
-    confusions: { truth: string | null; detected: string | null; count: number }[];
+    classes?: DetectionFigures[];
+    confusions?: { truth: string | null; detected: string | null; count: number }[];
   }) | null;
-  trajectory: { ate_rmse_m: number; ate_max_m: number; ate_aligned_rmse_m: number | null } | null;
-  surface: { median_m: number; p95_m: number; found: number; mean_m: number } | null;
+  trajectory?: { ate_rmse_m: number; ate_max_m: number; ate_aligned_rmse_m: number | null } | null;
+  surface?: { median_m: number; p95_m: number; found: number; mean_m: number } | null;
   realtime_factor: number;
   frames: { simulated: number; mapped: number; dropped: number };
 }
@@ -140,32 +141,35 @@ export interface RunData extends Common {
   verdict: string | null;
 }
 
-export interface Estimate {
-  mean: number | null;
+// What follows is results.json as harness/study/study_text.cpp writes it; keys that older ones lack may be missing.
+export interface Interval {
+  mean: number;
   low: number | null;
   high: number | null;
-  difference?: { mean: number | null; low: number | null; high: number | null } | null;
 }
 
 export interface Candidate {
   number: number;
   name: string;
   values: Record<string, number | string>;
+  settings?: string[];
   state: 'run' | 'screened_out' | 'refused';
-  why?: string;
   feasible?: boolean;
+  broken?: string[]; // constraints that do not hold, drives that failed
   pareto?: boolean;
-  measures?: Record<string, Estimate | null>;
-  runs?: { hall: string; seed: number; digest?: string; measures: Record<string, number | null> }[];
-  coverage: { caption: string; block: string }[];
-  preview: string | null;
+  measures?: Record<string, Interval & { difference?: Interval }>; // those that have a value
+  runs?: { hall: string; seed: number; digest?: string; error?: string; measures?: Record<string, number> }[];
+  coverage_maps?: string[];
+  // The page's own, in place of coverage by hall: blocks of pictures.
+  coverage?: { caption: string; block: string }[];
+  preview?: string | null;
 }
 
 export interface Measure {
   name: string;
   text?: string;
   better?: 'more' | 'less';
-  unit?: string;
+  source?: 'run' | 'coverage';
 }
 
 export interface StudyData extends Common {
@@ -176,17 +180,16 @@ export interface StudyData extends Common {
     factors: { name: string; key?: string }[];
     measures: Measure[];
     best_by?: string;
+    confidence?: number;
     baseline?: number | null;
     best?: number | null;
+    verdict?: string;
     halls?: string[];
     seeds?: number[];
+    constraints?: string[];
     candidates: Candidate[];
     pareto?: { measures: string[]; candidates: number[] } | null;
-    effects?: {
-      factor: string;
-      measure: string;
-      levels: { level: string | number; mean: number | null; low: number | null; high: number | null; runs?: number }[];
-    }[];
+    effects?: { factor: string; measure: string; levels: (Interval & { level: string; candidates?: number })[] }[];
   };
 }
 

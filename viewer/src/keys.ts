@@ -6,7 +6,12 @@ export interface Key {
   shown: string;
   text: string;
   run: () => void;
+  // Whether it is meant for what has the focus; elsewhere the browser does with it what it does on any page.
+  where: ((target: EventTarget | null) => boolean) | undefined;
 }
+
+// What a slider in focus does by itself.
+const kRangeKeys = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'PageUp', 'PageDown', 'Home', 'End'];
 
 export class Keys {
   private readonly list: Key[] = [];
@@ -19,8 +24,8 @@ export class Keys {
     document.body.append(this.overlay);
   }
 
-  add(keys: string[], shown: string, text: string, run: () => void): void {
-    this.list.push({ keys, shown, text, run });
+  add(keys: string[], shown: string, text: string, run: () => void, where?: (target: EventTarget | null) => boolean): void {
+    this.list.push({ keys, shown, text, run, where });
   }
 
   toggleHelp(): void {
@@ -39,13 +44,9 @@ export class Keys {
     const target = event.target;
     if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.type === 'text')) return;
     if (this.overlay.open && event.key !== '?') return;
-    // A button or a row has its own Enter and space.
-    const takesPress = target instanceof HTMLButtonElement || target instanceof HTMLInputElement || (target instanceof HTMLElement && target.tabIndex === 0 && !(target instanceof HTMLCanvasElement));
-    if (event.key === ' ' && takesPress) return;
-    // Sliders other than the time's have their own arrows.
-    if (target instanceof HTMLInputElement && target.type === 'range' && !target.classList.contains('time') && event.key.startsWith('Arrow')) return;
-    const found = this.list.find((key) => key.keys.includes(event.key));
+    const found = this.list.find((key) => key.keys.includes(event.key) && (key.where?.(target) ?? true));
     if (!found) return;
+    if (!found.where && target instanceof HTMLInputElement && target.type === 'range' && kRangeKeys.includes(event.key)) return;
     event.preventDefault();
     found.run();
   }

@@ -71,14 +71,17 @@ class Sheet {
     const options = (all: string, list: [string, string][]): HTMLOptionElement[] => [h('option', { value: '' }, all), ...list.map(([value, text]) => h('option', { value }, text))];
     this.classes = h('select', { id: 'class-filter', 'aria-label': 'Class' }, ...options('all classes', data.dataset.classes.map((c, i) => [String(i), c.name])), h('option', { value: 'none' }, 'without labels'));
     this.splits = h('select', { 'aria-label': 'Split' }, ...options('all splits', Object.keys(data.dataset.splits).map((name) => [name, name])));
-    for (const control of [this.classes, this.splits, this.boxes]) control.addEventListener('change', () => this.fill());
+    for (const control of [this.classes, this.splits]) control.addEventListener('change', () => this.fill());
+    this.boxes.addEventListener('change', () => this.showBoxes());
     keys.add(['ArrowRight'], '→', 'the next picture', () => this.go(this.current + 1));
     keys.add(['ArrowLeft'], '←', 'the picture before', () => this.go(this.current - 1));
-    keys.add(['ArrowDown'], '↓', 'a row down', () => this.go(this.current + this.across()));
-    keys.add(['ArrowUp'], '↑', 'a row up', () => this.go(this.current - this.across()));
+    // Elsewhere these two scroll.
+    const inSheet = (target: EventTarget | null): boolean => target instanceof Node && (this.grid.contains(target) || this.large.contains(target));
+    keys.add(['ArrowDown'], '↓', 'a row down (a picture in focus)', () => this.go(this.current + this.across()), inSheet);
+    keys.add(['ArrowUp'], '↑', 'a row up (a picture in focus)', () => this.go(this.current - this.across()), inSheet);
     keys.add(['b'], 'b', 'boxes: show or hide', () => {
       this.boxes.checked = !this.boxes.checked;
-      this.fill();
+      this.showBoxes();
     });
     document.body.append(this.large);
     this.large.addEventListener('click', (event) => event.target instanceof HTMLAnchorElement || this.large.close());
@@ -100,12 +103,17 @@ class Sheet {
           'button',
           { class: 'thumb', title: `${image.name}: ${image.hall}, ${image.kind}, ${image.split}`, onclick: () => this.open(index), onfocus: () => (this.current = index) },
           h('img', { src: pictureUrl(image.block), alt: `picture ${image.name}`, loading: 'lazy' }),
-          this.boxes.checked ? boxesOf(this.data, image, only, false) : null,
+          boxesOf(this.data, image, only, false),
         ),
       ),
     );
     this.current = -1;
     this.count.textContent = `${this.shown.length} of ${this.data.images.length} shown pictures; the set has ${this.data.dataset.images}`;
+  }
+
+  // They are there all the time: nothing loses its focus, and the picture that is open stays.
+  private showBoxes(): void {
+    for (const part of [this.grid, this.large]) part.classList.toggle('boxless', !this.boxes.checked);
   }
 
   private across(): number {
@@ -127,7 +135,7 @@ class Sheet {
     if (!image) return;
     this.current = index;
     this.large.replaceChildren(
-      h('figure', { class: 'shot' }, h('img', { src: pictureUrl(image.block), alt: `picture ${image.name}` }), this.boxes.checked ? boxesOf(this.data, image, null, true) : null),
+      h('figure', { class: 'shot' }, h('img', { src: pictureUrl(image.block), alt: `picture ${image.name}` }), boxesOf(this.data, image, null, true)),
       h('p', {}, h('b', {}, image.name), ` ${image.hall}, ${image.kind} view, ${image.split}; ${image.labels.length} ${image.labels.length === 1 ? 'label' : 'labels'}, ${image.left_out.length} left out. Dashed: the whole object, hidden and cut-off parts included; grey: left out. Arrows go on, Esc closes. `, h('a', { href: `images/${image.name}.jpg` }, 'The picture itself')),
     );
     if (!this.large.open) this.large.showModal();

@@ -7,6 +7,9 @@ import type { Colouring } from './mesh';
 import { lines, Paint } from './paint';
 import type { Item, State } from './state';
 
+// Each name is an element of the page that moves with the view.
+export const kMaxNames = 200;
+
 interface Drawn {
   item: Item;
   side: 'truth' | 'mapped';
@@ -69,8 +72,9 @@ export class Cuboids {
 
   // `then`: the map's objects at a moment, as they were; null for those of the finished map.
   update(then: Box[] | null = null): void {
+    const known = new Map((then ?? []).map((box) => [box.id, box]));
     for (const d of this.drawn) {
-      const box = d.side === 'truth' || then === null ? d.box : then.find((each) => each.id === d.box.id);
+      const box = d.side === 'truth' || then === null ? d.box : known.get(d.box.id);
       const there = box !== undefined;
       if (box) place(d, box);
       d.group.visible = there && (d.side === 'truth' ? this.showTruth : this.showMapped) && !this.state.hidden.has(d.item);
@@ -97,7 +101,8 @@ export class Cuboids {
     const sides = new THREE.Mesh(shape, new Paint(kMapped, { opacity: 0.08 }));
     const group = new THREE.Group();
     group.add(outline, sides);
-    const label = side === 'mapped' || !item.mapped ? h('span', { class: side }, String(box.id)) : null;
+    const named = (side === 'mapped' || !item.mapped) && this.labels.childElementCount < kMaxNames;
+    const label = named ? h('span', { class: side }, String(box.id)) : null;
     if (label) this.labels.append(label);
     this.object.add(group);
     this.drawn.push({ item, side, group, box, lines: outline, edges, label, height: 0, sides });

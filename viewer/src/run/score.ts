@@ -1,10 +1,10 @@
-// What a run's numbers say: key figures, Table 6, timing, errors over time.
-import type { RunData, ScoredObject, Summary } from '../data';
+// What a run's numbers say: key figures, timing, errors over time, detections.
+import type { RunData } from '../data';
 import { h, section } from '../dom';
 import { stackedChart, timeChart, type TimeChart } from '../chart';
-import { colourOfShare, css, fixed } from '../format';
+import { fixed } from '../format';
 import { markdown } from '../markdown';
-import { Table, type Column } from '../table';
+import { Table } from '../table';
 import { nameOf, type Item, type State } from './state';
 
 function card(value: string, text: string, note = ''): HTMLElement {
@@ -16,12 +16,14 @@ export function cards(data: RunData): HTMLElement {
   const score = data.score;
   if (score) {
     const summary = score.summary, paper = data.paper.table6.at(-1);
-    list.push(
-      card(`${summary.matched} of ${summary.truth}`, 'objects found', `${summary.mapped} mapped`),
-      card(fixed(summary.mean_iou3d, 3), 'mean 3D IoU', paper ? `the paper: ${fixed(paper.iou3d, 3)}` : ''),
-      card(`${fixed(summary.mean_e_trans_m === null ? null : 100 * summary.mean_e_trans_m, 1)} cm`, 'translation error', paper ? `the paper: ${fixed(100 * paper.e_trans_m, 1)} cm` : ''),
-      card(`${fixed(summary.mean_e_rot_deg, 2)}°`, 'rotation error', paper ? `the paper: ${fixed(paper.e_rot_deg, 1)}°` : ''),
-    );
+    if (summary) {
+      list.push(
+        card(`${summary.matched ?? '–'} of ${summary.truth ?? '–'}`, 'objects found', `${summary.mapped ?? '–'} mapped`),
+        card(fixed(summary.mean_iou3d, 3), 'mean 3D IoU', paper ? `the paper: ${fixed(paper.iou3d, 3)}` : ''),
+        card(`${fixed(typeof summary.mean_e_trans_m === 'number' ? 100 * summary.mean_e_trans_m : null, 1)} cm`, 'translation error', paper ? `the paper: ${fixed(100 * paper.e_trans_m, 1)} cm` : ''),
+        card(`${fixed(summary.mean_e_rot_deg, 2)}°`, 'rotation error', paper ? `the paper: ${fixed(paper.e_rot_deg, 1)}°` : ''),
+      );
+    }
     if (score.trajectory) list.push(card(`${fixed(100 * score.trajectory.ate_rmse_m, 1)} cm`, 'path error, rmse', `${fixed(100 * score.trajectory.ate_max_m, 1)} cm at most`));
     if (score.surface) list.push(card(`${fixed(1000 * score.surface.median_m, 1)} mm`, 'surface error', `median; ${fixed(100 * score.surface.found, 1)} % there`));
   } else if (data.kind === 'map') {
@@ -38,107 +40,6 @@ export function cards(data: RunData): HTMLElement {
     list.push(card(`${fixed(length, 1)} m`, 'path length', `in ${fixed(data.path.at(-1)?.[0], 0)} s`));
   }
   return h('div', { class: 'cards' }, ...list);
-}
-
-export function iouBar(iou: number | null | undefined): Node {
-  if (iou === null || iou === undefined) return h('span', {}, '–');
-  const bar = h('span', { class: 'meter' }, fixed(iou, 4));
-  bar.style.setProperty('--share', `${Math.round(100 * iou)}%`);
-  bar.style.setProperty('--bar', css(colourOfShare(iou)));
-  return bar;
-}
-
-type ScoreRow = { item: Item; scored: ScoredObject | null };
-
-function scoreTable(state: State, objects: ScoredObject[], summary: Summary, name: string): { element: HTMLElement; choose: (item: Item | null) => void } {
-  const rows: ScoreRow[] = state.items
-    .filter((item) => item.truth !== null || item.score !== null)
-    .map((item) => ({ item, scored: objects.find((object) => object.truth_id === (item.score?.truth_id ?? item.truth?.id)) ?? null }));
-  const strays: ScoreRow[] = state.items.filter((item) => item.score === null && item.mapped !== null).map((item) => ({ item, scored: null }));
-  const columns: Column<ScoreRow>[] = [
-    { head: 'object', cell: (r) => (r.scored ? `${r.scored.truth_id}${r.scored.counted ? '' : ' (not counted)'}` : '–'), value: (r) => r.scored?.truth_id },
-    { head: 'class', cell: (r) => r.item.class, value: (r) => r.item.class, words: true },
-    { head: 'map id', cell: (r) => String(r.scored ? (r.scored.map_id ?? '–') : (r.item.mapped?.id ?? '–')), value: (r) => r.scored?.map_id ?? r.item.mapped?.id },
-    { head: 'IoU 3D', cell: (r) => iouBar(r.scored?.iou3d), value: (r) => r.scored?.iou3d, better: 'more' },
-    { head: 'E trans (m)', cell: (r) => fixed(r.scored?.e_trans_m, 3), value: (r) => r.scored?.e_trans_m, better: 'less' },
-    { head: 'E rot (°)', cell: (r) => fixed(r.scored?.e_rot_deg, 1), value: (r) => r.scored?.e_rot_deg, better: 'less' },
-    { head: 'seen', title: 'Share of the viewable surface that the mapped frames saw', cell: (r) => fixed(r.scored?.visible_fraction, 2), value: (r) => r.scored?.visible_fraction, better: 'more' },
-  ];
-  const paper = state.data.paper.table6;
-  const mean = paper.at(-1);
-  const footer: string[][] = [['average', '', '', fixed(summary.mean_iou3d, 4), fixed(summary.mean_e_trans_m, 3), fixed(summary.mean_e_rot_deg, 1), '']];
-  if (mean) footer.push(['the paper', '', '', fixed(mean.iou3d, 4), fixed(mean.e_trans_m, 3), fixed(mean.e_rot_deg, 1), '']);
-  const all = [...rows, ...strays];
-  const table = new Table(all, columns, {
-    name,
-    footer,
-    onChoose: (row: ScoreRow) => state.choose(row.item),
-    rowClass: (row: ScoreRow) => (row.scored && !row.scored.counted ? 'faint' : ''),
-  });
-  return {
-    element: h(
-      'div',
-      {},
-      table.element,
-      h('p', { class: 'note' }, `${summary.matched} of ${summary.truth} objects matched (IoU ≥ 0.5), ${summary.mapped} mapped; mAP as in the paper ${fixed(summary.map_paper, 2)}, AP50 ${fixed(summary.ap50, 2)}.`),
-    ),
-    choose: (item) => table.choose(all.find((row) => row.item === item) ?? null),
-  };
-}
-
-export function table6(state: State): HTMLElement[] {
-  const score = state.data.score;
-  if (!score) return [];
-  const parts: HTMLElement[] = [];
-  const tables = [scoreTable(state, score.objects, score.summary, 'Table 6, as mapped')];
-  const tabs = h('div', { class: 'tabs', role: 'tablist' });
-  const body = h('div');
-  const names = ['as mapped'];
-  if (score.objects_aligned && score.summary_aligned) {
-    tables.push(scoreTable(state, score.objects_aligned, score.summary_aligned, 'Table 6, aligned'));
-    names.push('aligned to the truth');
-  }
-  const show = (index: number): void => {
-    body.replaceChildren(tables[index]?.element ?? '');
-    if (index === 1 && score.alignment) {
-      body.append(
-        h('p', { class: 'note' }, `The map was moved by ${fixed(score.alignment.x_m, 3)} m, ${fixed(score.alignment.y_m, 3)} m and ${fixed(score.alignment.yaw_deg, 2)}°. The paper's truth was annotated in its own map, so its table holds no drift.`),
-      );
-    }
-    [...tabs.children].forEach((tab, i) => tab.setAttribute('aria-selected', String(i === index)));
-  };
-  names.forEach((name, index) => tabs.append(h('button', { role: 'tab', onclick: () => show(index) }, name)));
-  show(0);
-  state.whenChosen(() => tables.forEach((table) => table.choose(state.chosen)));
-  parts.push(section('Table 6', names.length > 1 ? tabs : null, body, paperTable(state.data)));
-  if (score.explanations.length > 0) {
-    parts.push(
-      section(
-        'What is wrong',
-        h(
-          'ul',
-          {},
-          ...score.explanations.map((line) => h('li', {}, h('b', {}, line.truth_id !== null ? `Object ${line.truth_id}` : `Mapped object ${line.map_id ?? '?'}`), `: ${line.text}.`)),
-        ),
-      ),
-    );
-  }
-  return parts;
-}
-
-function paperTable(data: RunData): HTMLElement {
-  const cells = (values: string[]): HTMLElement => h('tr', {}, ...values.map((value) => h('td', {}, value)));
-  return h(
-    'details',
-    {},
-    h('summary', {}, "The paper's own Table 6"),
-    h(
-      'table',
-      {},
-      h('thead', {}, h('tr', {}, ...['object', 'IoU 3D', 'E trans (m)', 'E rot (°)'].map((head) => h('th', {}, head)))),
-      h('tbody', {}, ...data.paper.table6.map((row) => cells([row.id, fixed(row.iou3d, 4), fixed(row.e_trans_m, 3), fixed(row.e_rot_deg, 1)]))),
-    ),
-  );
 }
 
 export function mappedTable(state: State): HTMLElement | null {
@@ -193,7 +94,7 @@ export function chartsOverTime(state: State): HTMLElement[] {
   const error = state.data.path_error;
   if (error && error.length > 1) {
     const metres = timeChart(error.map((row) => [row[0], 100 * row[1]]), 'position (cm)', go);
-    const degrees = timeChart(error.map((row) => [row[0], row[2]]), 'heading (°)', go);
+    const degrees = timeChart(error.map((row) => [row[0], row[2]]), 'rotation (°)', go);
     charts.push(metres, degrees);
     parts.push(section('Trajectory error over time', metres.element, degrees.element, h('p', { class: 'note' }, 'Not aligned: where the robot thought it was against where it was. A click goes to that moment.')));
   }
@@ -215,10 +116,10 @@ export function detections(data: RunData): HTMLElement | null {
   const line = (name: string, row: { labels: number; precision: number | null; recall: number | null; ap50: number | null; ap: number | null; tp: number; fp: number; fn: number }, sum = false): HTMLElement =>
     h('tr', { class: sum ? 'sum' : '' }, h('td', { class: 'words' }, name), ...[String(row.labels), fixed(row.precision, 3), fixed(row.recall, 3), fixed(row.ap50, 3), fixed(row.ap, 3), String(row.tp), String(row.fp), String(row.fn)].map((text) => h('td', {}, text)));
   const heads = ['class', 'labels', 'precision', 'recall', 'AP50', 'AP', 'found', 'wrong', 'missed'];
-  const confusions = found.confusions.map((c) => h('li', {}, `${c.truth ?? 'background'} ${c.detected === null ? 'missed' : `taken for ${c.detected}`}, ${c.count} times`));
+  const confusions = (found.confusions ?? []).map((c) => h('li', {}, `${c.truth ?? 'background'} ${c.detected === null ? 'missed' : `taken for ${c.detected}`}, ${c.count} times`));
   return section(
     'Detections in the mapped frames',
-    h('div', { class: 'scroll' }, h('table', {}, h('thead', {}, h('tr', {}, ...heads.map((head, i) => h('th', { class: i === 0 ? 'words' : null }, head)))), h('tbody', {}, ...found.classes.map((row) => line(row.class ?? '?', row)), line('all', found, true)))),
+    h('div', { class: 'scroll' }, h('table', {}, h('thead', {}, h('tr', {}, ...heads.map((head, i) => h('th', { class: i === 0 ? 'words' : null }, head)))), h('tbody', {}, ...(found.classes ?? []).map((row) => line(row.class ?? '?', row)), line('all', found, true)))),
     confusions.length > 0 ? h('ul', {}, ...confusions) : null,
   );
 }
@@ -246,7 +147,7 @@ export function details(state: State): HTMLElement {
     if (item.truth) rows.push(['true size', size(item.truth.size)]);
     const since = state.data.frames.find((frame) => frame.objects.some((object) => object.id === item.mapped?.id));
     if (since) rows.push(['in the map since', `${since.t_s.toFixed(1)} s`]);
-    const why = state.data.score?.explanations.find((line) => (item.score ? line.truth_id === item.score.truth_id : line.map_id === item.mapped?.id));
+    const why = state.data.score?.explanations?.find((line) => (item.score ? line.truth_id === item.score.truth_id : line.map_id === item.mapped?.id));
     box.replaceChildren(
       h('b', {}, nameOf(item)),
       h('dl', {}, ...rows.flatMap(([key, value]) => [h('dt', {}, key), h('dd', {}, value)])),

@@ -13,12 +13,15 @@ export interface Item {
 export function itemsOf(data: RunData): Item[] {
   const items: Item[] = [];
   const taken = new Set<number>();
+  const truths = new Map(data.truth.map((box) => [box.id, box])), maps = new Map(data.mapped.map((box) => [box.id, box]));
   for (const scored of data.score?.objects ?? []) {
-    const truth = data.truth.find((box) => box.id === scored.truth_id) ?? null;
-    const mapped = scored.map_id === null ? null : (data.mapped.find((box) => box.id === scored.map_id) ?? null);
+    const truth = truths.get(scored.truth_id) ?? null;
+    const mapped = scored.map_id === null ? null : (maps.get(scored.map_id) ?? null);
     if (mapped) taken.add(mapped.id);
     items.push({ key: `t${scored.truth_id}`, class: scored.class, truth, mapped, score: scored });
   }
+  // A score without a list of objects still has its true ones.
+  if (data.score && !data.score.objects) for (const truth of truths.values()) items.push({ key: `t${truth.id}`, class: truth.class, truth, mapped: null, score: null });
   for (const mapped of data.mapped) {
     if (!taken.has(mapped.id)) items.push({ key: `m${mapped.id}`, class: mapped.class, truth: null, mapped, score: null });
   }
@@ -26,7 +29,7 @@ export function itemsOf(data: RunData): Item[] {
 }
 
 export function nameOf(item: Item): string {
-  const id = item.truth && item.mapped ? `${item.truth.id} (map ${item.mapped.id})` : item.truth ? `${item.truth.id}, not mapped` : `map ${item.mapped?.id ?? '?'}`;
+  const id = item.truth && item.mapped ? `${item.truth.id} (map ${item.mapped.id})` : item.truth ? `${item.truth.id}, ${item.score ? 'not mapped' : 'not scored'}` : `map ${item.mapped?.id ?? '?'}`;
   return `${item.class} ${id}`;
 }
 
@@ -37,12 +40,14 @@ export class State {
   chosen: Item | null = null;
   frame = 0; // index into data.frames
   readonly hidden = new Set<Item>();
+  private readonly byMapId: Map<number, Item>;
   private readonly onChoice: Listener[] = [];
   private readonly onFrame: Listener[] = [];
   private readonly onHidden: Listener[] = [];
 
   constructor(readonly data: RunData) {
     this.items = itemsOf(data);
+    this.byMapId = new Map(this.items.flatMap((item): [number, Item][] => (item.mapped ? [[item.mapped.id, item]] : [])));
     this.frame = Math.max(0, data.frames.length - 1);
   }
 
@@ -91,6 +96,6 @@ export class State {
   }
 
   itemOfMapId(id: number): Item | null {
-    return this.items.find((item) => item.mapped?.id === id) ?? null;
+    return this.byMapId.get(id) ?? null;
   }
 }
