@@ -6,7 +6,7 @@
 
 namespace waretwin {
 
-// Adds configuration, scene (its digest after add_scene), the detector's files and the map that is gone on from. Their bytes count, not where they lie.
+// Adds configuration, scene (digest_of), the detector's files and the map that is gone on from. Their bytes count, not where they lie.
 void add_run(const RunConfig& config, const std::string& scene, Digest& digest);
 
 }  // namespace waretwin

@@ -87,8 +87,7 @@ void laser_scan_with_spot(benchmark::State& state) {
   const LaserConfig laser;
   const Surfaces surfaces(hall());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        spot_scan(*hall(), surfaces, laser, "laser", 0, [&](Stamp) { return laser.mount.X_BL(); }).ranges.data());
+    benchmark::DoNotOptimize(spot_scan(*hall(), surfaces, laser, "laser", 0, [&](Stamp) { return laser.mount.X_BL(); }).ranges.data());
   }
 }
 

@@ -14,7 +14,7 @@ int add_cart(Kit& kit, int parent, const Placement& at);    // a transport vehic
 // The mapping vehicle itself, in its frame B: a low base of 0.9 x 0.6 m with room for the laser at its front left corner, a conveyor of its
 // own on an aluminium frame behind, and a crossbar at 1.4 m that carries the camera.
 int add_vehicle(Kit& kit, int parent, const Placement& at);
-int add_block(Kit& kit, int parent, const Placement& at);   // a workpiece as small as a fist
+int add_block(Kit& kit, int parent, const Placement& at);  // a workpiece as small as a fist
 
 std::vector<std::string> mover_names();
 // The model of this name as .glb: carton, tote, person, cart, block or vehicle. Throws Error for another.
