@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -54,6 +55,7 @@ class StudyRunner {
     summary.results = judged_study(setup_.study, std::move(results_));
     summary.verdict = verdict_text(setup_.study, *summary.results);
     summary.folder = folder();
+    summary.kinds_of_cpu = static_cast<int>(kinds_of_cpu_.size());
     write_results(folder(), setup_, *summary.results, [this] { check(); });
     write_report(folder(), ReportKind::kStudy);
     if (!request_.coverage_only) write_file(folder() / "timing.csv", times_);
@@ -132,8 +134,9 @@ class StudyRunner {
               static_cast<double>(done) / static_cast<double>(order.size())});
     }
     for (const Look& look : looks) {
-      results_[look.candidate].halls[look.in_hall->hall] =
-          read_unit(store_.result(look.unit).value(), store_.file(look.unit)).result.values;
+      UnitRecord record = read_unit(store_.result(look.unit).value(), store_.file(look.unit));
+      kinds_of_cpu_.insert(record.cpu);
+      results_[look.candidate].halls[look.in_hall->hall] = std::move(record.result.values);
     }
     return 0;
   }
@@ -302,7 +305,6 @@ class StudyRunner {
       record.result.seed = one.config.scenario.seed;
       results_[one.candidate].runs.push_back(std::move(record.result));
     }
-    summary.kinds_of_cpu = static_cast<int>(kinds_of_cpu_.size());
   }
 
   const StudyRequest& request_;
