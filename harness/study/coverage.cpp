@@ -119,8 +119,13 @@ std::shared_ptr<const RayCaster> own_body_of(const Scene& scene) {
   alone->name = "vehicle";
   alone->textures = scene.textures;
   alone->materials = scene.materials;
-  alone->meshes = scene.meshes;
-  for (const int index : scene.vehicle) alone->instances.push_back(scene.instances[static_cast<std::size_t>(index)]);
+  // Its own meshes alone: each gets a tree.
+  for (const int index : scene.vehicle) {
+    Instance instance = scene.instances[static_cast<std::size_t>(index)];
+    alone->meshes.push_back(scene.meshes[static_cast<std::size_t>(instance.mesh)]);
+    instance.mesh = static_cast<int>(alone->meshes.size()) - 1;
+    alone->instances.push_back(instance);
+  }
   return std::make_shared<const RayCaster>(alone);
 }
 

@@ -277,16 +277,16 @@ class StudyRunner {
     const int count = static_cast<int>(all.size());
     summary.runs = count;
     // Nobody takes an earlier study's verdict for this one's; but one that would only be made again stays.
-    const bool all_done = std::all_of(all.begin(), all.end(), [this](const Drive& one) { return is_done(one.unit); });
-    if (!request_.merge_only && !all_done) remove_results(request_.out);
+    std::vector<bool> done;
+    for (const Drive& one : all) done.push_back(is_done(one.unit));
+    if (!request_.merge_only && std::find(done.begin(), done.end(), false) != done.end()) remove_results(request_.out);
     std::vector<const Drive*> to_do;
     for (int i = 0; i < count; ++i) {
       if (request_.merge_only || !request_.shard.has(i)) continue;
-      const Drive& one = all[static_cast<std::size_t>(i)];
-      if (is_done(one.unit)) {
+      if (done[static_cast<std::size_t>(i)]) {
         ++summary.found;
       } else {
-        to_do.push_back(&one);
+        to_do.push_back(&all[static_cast<std::size_t>(i)]);
       }
     }
     drive_side_by_side(to_do);

@@ -22,19 +22,11 @@ constexpr const char* kBest = "best";
 
 // The baseline and the best, by what the study judges; then by number.
 std::vector<const CandidateResult*> shown_on_maps(const StudyConfig& study, const StudyResults& results) {
-  const std::size_t by = *study_measure(results.best_by);
-  const double sign = study_measures()[by].more_is_better ? -1.0 : 1.0;
-  std::vector<const CandidateResult*> rest;
-  for (const CandidateResult& candidate : results.candidates) {
-    if (candidate.number != 0 && candidate.measured[by]) rest.push_back(&candidate);
-  }
-  std::stable_sort(rest.begin(), rest.end(), [&](const CandidateResult* a, const CandidateResult* b) {
-    if (a->feasible() != b->feasible()) return a->feasible();
-    return sign * a->measured[by]->mean < sign * b->measured[by]->mean;
-  });
-  rest.resize(std::min(rest.size(), static_cast<std::size_t>(study.coverage_maps)));
-  rest.insert(rest.begin(), &results.candidates.front());
-  return rest;
+  std::vector<const CandidateResult*> shown = ranked(results);
+  std::erase(shown, &results.candidates.front());
+  shown.resize(std::min(shown.size(), static_cast<std::size_t>(study.coverage_maps)));
+  shown.insert(shown.begin(), &results.candidates.front());
+  return shown;
 }
 
 CoverageMaps write_maps(const fs::path& out, const StudySetup& setup, const StudyResults& results, const std::function<void()>& check) {

@@ -259,6 +259,20 @@ std::vector<std::string> broken_by_measures(const StudyConfig& study, const Stud
   return broken;
 }
 
+std::vector<const CandidateResult*> ranked(const StudyResults& results) {
+  const std::size_t by = *study_measure(results.best_by);
+  const double sign = study_measures()[by].more_is_better ? -1.0 : 1.0;
+  std::vector<const CandidateResult*> list;
+  for (const CandidateResult& candidate : results.candidates) {
+    if (candidate.measured[by]) list.push_back(&candidate);
+  }
+  std::stable_sort(list.begin(), list.end(), [&](const CandidateResult* a, const CandidateResult* b) {
+    if (a->feasible() != b->feasible()) return a->feasible();
+    return sign * a->measured[by]->mean < sign * b->measured[by]->mean;
+  });
+  return list;
+}
+
 StudyValues mean_coverage(const CandidateResult& candidate) {
   StudyValues means(study_measures().size());
   for (std::size_t m = 0; m < means.size(); ++m) {

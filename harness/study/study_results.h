@@ -73,6 +73,9 @@ StudyResults judged_study(const StudyConfig& study, std::vector<CandidateResult>
 std::optional<std::string> broken_by_values(const StudyConfig& study, const DesignPoint& values);
 std::vector<std::string> broken_by_measures(const StudyConfig& study, const StudyValues& means, MeasureSource source);
 
+// Those that have a value of what the best is chosen by, best first; what is not feasible after what is, equal ones by number.
+std::vector<const CandidateResult*> ranked(const StudyResults& results);
+
 // Mean of coverage over halls, for each of study_measures(); nothing for those of runs.
 StudyValues mean_coverage(const CandidateResult& candidate);
 

@@ -73,15 +73,11 @@ std::string outline_of(const RobotConfig& robot) {
   return number_text(robot.length_m) + " x " + number_text(robot.width_m) + " x " + number_text(robot.height_m);
 }
 
-std::string text_of(RunConfig config) {
-  return write_config([&](Fields& f) { config.visit(f); });
-}
-
 // Keys that would be set twice, of which one would do nothing.
 void check_keys(const StudyConfig& study, const std::vector<Setting>& given) {
   std::set<std::string> varied;
   for (const auto& [name, factor] : study.vary) {
-    for (const std::string& key : factor.also.empty() ? std::vector<std::string>{} : factor.also) {
+    for (const std::string& key : factor.also) {
       if (!varied.insert(key).second) throw Error("vary." + name + ".also: '" + key + "' varies already; expected each key once");
     }
     if (!varied.insert(factor.key).second)
@@ -160,9 +156,14 @@ DesignPoint present_values(const StudyConfig& study, const Candidate& candidate)
   return values;
 }
 
-bool same_everywhere(const Candidate& a, const Candidate& b) {
-  return std::equal(a.halls.begin(), a.halls.end(), b.halls.begin(), b.halls.end(),
-                    [](const CandidateInHall& x, const CandidateInHall& y) { return text_of(x.config) == text_of(y.config); });
+// Of each hall: candidates with equal ones are the same.
+std::vector<std::string> texts_of(const Candidate& candidate) {
+  std::vector<std::string> texts;
+  for (const CandidateInHall& in_hall : candidate.halls) {
+    RunConfig config = in_hall.config;
+    texts.push_back(write_config([&](Fields& f) { config.visit(f); }));
+  }
+  return texts;
 }
 
 }  // namespace
@@ -240,7 +241,6 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
   Halls halls;
   std::vector<RobotConfig> robots;  // of the baseline, by hall
   const auto complete = [&](Candidate& candidate) {
-    candidate.settings = settings_of(study, candidate.values);
     for (std::size_t k = 0; k < bases.size(); ++k) {
       looked_at("candidate " + candidate.name + " in hall '" + bases[k].name + "'", [&] {
         RunConfig config = configuration(study, request, bases[k], candidate.settings);
@@ -254,6 +254,7 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
   Candidate baseline;
   baseline.name = name_of(0);
   for (const auto& entry : study.vary) baseline.values.push_back(entry.second.baseline);
+  baseline.settings = settings_of(study, baseline.values);
   complete(baseline);
   looked_at("the baseline", [&] {
     baseline.values = present_values(study, baseline);
@@ -261,6 +262,7 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
     if (!config.truth_stages.detector) make_detector(config.mapper);  // throws where it cannot be
   });
   baseline.refused = broken_by_values(study, baseline.values).value_or("");
+  const std::vector<std::string> baseline_texts = texts_of(baseline);
   setup.candidates.push_back(std::move(baseline));
   std::vector<DesignPoint> points;
   looked_at("the design", [&] { points = design_points(study); });
@@ -273,7 +275,7 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
     candidate.settings = settings_of(study, point);
     if (candidate.refused.empty()) {
       complete(candidate);
-      if (same_everywhere(candidate, setup.candidates.front())) continue;
+      if (texts_of(candidate) == baseline_texts) continue;
       candidate.values = present_values(study, candidate);  // as the configuration reads them: yes is true
     }
     setup.candidates.push_back(std::move(candidate));

@@ -84,23 +84,6 @@ std::string interval_text(const std::optional<Interval>& interval) {
   return text;
 }
 
-// Best first: what is not feasible after what is.
-std::vector<const CandidateResult*> ranked(const StudyResults& results) {
-  const std::size_t by = *study_measure(results.best_by);
-  const double sign = study_measures()[by].more_is_better ? -1.0 : 1.0;
-  std::vector<const CandidateResult*> list;
-  for (const CandidateResult& candidate : results.candidates) {
-    if (candidate.measured[by]) list.push_back(&candidate);
-  }
-  std::stable_sort(list.begin(), list.end(), [&](const CandidateResult* a, const CandidateResult* b) {
-    if (a->feasible() != b->feasible()) return a->feasible();
-    return sign * a->measured[by]->mean < sign * b->measured[by]->mean;
-  });
-  return list;
-}
-
-std::vector<std::string> factor_cells(const DesignPoint& values) { return {values.begin(), values.end()}; }
-
 std::string table_of(const StudyConfig& study, const std::vector<const CandidateResult*>& candidates) {
   std::vector<std::vector<std::string>> rows = {{"candidate"}};
   for (const auto& entry : study.vary) rows.front().push_back(entry.first);
@@ -109,7 +92,7 @@ std::string table_of(const StudyConfig& study, const std::vector<const Candidate
   for (const CandidateResult* candidate : candidates) {
     std::vector<std::string>& row = rows.emplace_back();
     row.push_back(candidate->name);
-    for (const std::string& value : factor_cells(candidate->values)) row.push_back(value);
+    row.insert(row.end(), candidate->values.begin(), candidate->values.end());
     for (const std::size_t m : judged(study)) {
       const std::optional<Interval>& interval = candidate->measured[m];
       row.push_back(number("%.4g", interval ? std::optional(interval->mean) : std::nullopt));

@@ -103,12 +103,17 @@ TEST(Coverage, LookingStraightDownSeesARectangle) {
   EXPECT_NEAR(static_cast<double>(looked_at) / static_cast<double>(looks.size()), seen.floor, 1e-9);  // all of the bare floor is viewable
 }
 
-TEST(Coverage, ObjectsAreSeenFromTheSidesThatTheRoutePasses) {
+// A room with a cube of 1 m on the floor, its corner of least x at (x, 1).
+std::shared_ptr<const RayCaster> room_with_cube(float x) {
   Scene scene = fixtures::room(-6, 6, -4, 4, 4);
   const int object = fixtures::add_object(scene, "box");
   const int box = fixtures::add_mesh(scene, fixtures::unit_box(), fixtures::add_material(scene, {0.5f, 0.5f, 0.5f}));
-  fixtures::add_instance(scene, box, fixtures::placed({-0.5f, 1.0f, 0.0f}, {1.0f, 1.0f, 1.0f}), object);
-  const auto hall = std::make_shared<const RayCaster>(std::make_shared<const Scene>(scene));
+  fixtures::add_instance(scene, box, fixtures::placed({x, 1.0f, 0.0f}, {1.0f, 1.0f, 1.0f}), object);
+  return std::make_shared<const RayCaster>(std::make_shared<const Scene>(scene));
+}
+
+// From x = -3 to 3 along y, the camera 0.5 m high and to the left.
+Scenario past_the_cube(double y) {
   Scenario scenario;
   CameraConfig camera = plain_camera(0.5, 0);
   camera.mount.yaw_deg = 90;
@@ -116,8 +121,14 @@ TEST(Coverage, ObjectsAreSeenFromTheSidesThatTheRoutePasses) {
   Waypoint from, to;
   from.x_m = -3;
   to.x_m = 3;
-  from.y_m = to.y_m = -1.5;
+  from.y_m = to.y_m = y;
   scenario.robot.route = {from, to};
+  return scenario;
+}
+
+TEST(Coverage, ObjectsAreSeenFromTheSidesThatTheRoutePasses) {
+  const auto hall = room_with_cube(-0.5f);
+  Scenario scenario = past_the_cube(-1.5);
   const CoverageHall coverage(hall, scenario.robot, {});
   // Three sides of five that can be seen (the one below lies on the floor): the one that it passes, and in passing those to the left and
   // right of it; from 0.5 m height the top is out of sight.
@@ -127,20 +138,8 @@ TEST(Coverage, ObjectsAreSeenFromTheSidesThatTheRoutePasses) {
 }
 
 TEST(Coverage, BestMomentIsWhereObjectsAreSeen) {
-  Scene scene = fixtures::room(-6, 6, -4, 4, 4);
-  const int object = fixtures::add_object(scene, "box");
-  const int box = fixtures::add_mesh(scene, fixtures::unit_box(), fixtures::add_material(scene, {0.5f, 0.5f, 0.5f}));
-  fixtures::add_instance(scene, box, fixtures::placed({2.5f, 1.0f, 0.0f}, {1.0f, 1.0f, 1.0f}), object);
-  const auto hall = std::make_shared<const RayCaster>(std::make_shared<const Scene>(scene));
-  Scenario scenario;
-  CameraConfig camera = plain_camera(0.5, 0);
-  camera.mount.yaw_deg = 90;
-  scenario.sensors = with_camera(camera);
-  Waypoint from, to;
-  from.x_m = -3;
-  to.x_m = 3;
-  from.y_m = to.y_m = -1;
-  scenario.robot.route = {from, to};
+  const auto hall = room_with_cube(2.5f);
+  const Scenario scenario = past_the_cube(-1);
   EXPECT_GT(CoverageHall(hall, scenario.robot, {}).best_moment(scenario), 0.75);
 }
 
