@@ -10,8 +10,10 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates
   libembree-dev libtinygltf-dev libeigen3-dev libopencv-dev libpcl-dev libbullet-dev
   libtbb-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libspdlog-dev librandom123-dev
-  libgtest-dev libbenchmark-dev zlib1g-dev libssl-dev
+  libgtest-dev libbenchmark-dev zlib1g-dev libssl-dev libtinyxml2-dev
   liboctomap-dev  # optional: without it no octomap.bt is written
+  # optional: without them no ROS bags are read or written; python3-rosbag is for the test that holds ours against ROS's own reader
+  librosbag-storage-dev libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev libtf2-dev python3-rosbag
   libtorch-dev    # optional: without it no detector is trained
   darknet         # optional: tests hold trained detectors against it
   chromium        # optional: tests use the report page in it

@@ -9,11 +9,13 @@ LaserScan empty_scan(const LaserConfig& config, const std::string& sensor, Stamp
   LaserScan scan;
   scan.stamp = stamp;
   scan.sensor = sensor;
-  scan.angle_min = config.angle_min();
-  scan.angle_increment = config.angle_increment();
+  // What a driver says of its scan are 32-bit floats (sensor_msgs/LaserScan): recordings of any kind then hold the very numbers.
+  const auto as_float = [](double value) { return static_cast<double>(static_cast<float>(value)); };
+  scan.angle_min = as_float(config.angle_min());
+  scan.angle_increment = as_float(config.angle_increment());
   scan.beam_interval = config.beam_interval();
-  scan.range_min = config.range_min_m;
-  scan.range_max = config.range_max_m;
+  scan.range_min = as_float(config.range_min_m);
+  scan.range_max = as_float(config.range_max_m);
   scan.ranges.assign(static_cast<std::size_t>(config.beams), 0.0f);
   return scan;
 }

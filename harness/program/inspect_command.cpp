@@ -124,6 +124,7 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
   std::cout << "  " << frames << " frames, " << scans << " scans, " << readings << " odometry readings in "
             << (first ? to_seconds(last - *first) : 0.0) << " s\n  poses " << (info.has_recorded_poses ? "recorded" : "not recorded")
             << ", up is " << info.up_W.transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
+  for (const std::string& remark : stream->remarks()) std::cout << "  " << remark << "\n";
 }
 
 int inspect_noise(const InspectOptions& options) {
@@ -164,7 +165,7 @@ int inspect(const InspectOptions& options) {
     return 0;
   }
   if (options.motion_s) throw Error(file, "has no motion; --motion expects a scenario");
-  if (is_carmen_log(file) || (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json"))) {
+  if (is_recording_file(file) || (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json"))) {
     MapConfig config;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });
     if (options.keys) {
@@ -182,7 +183,7 @@ int inspect(const InspectOptions& options) {
   } else if (extension == ".json" || std::filesystem::is_directory(file)) {
     describe_objects(read_object_list(file_or_in_folder(file, "cuboids.json")));
   } else {
-    throw Error(file, "is of an unknown kind; expected .yaml, .glb, .gltf, .waretwin, .json, .log, .log.gz or a recording's folder");
+    throw Error(file, "is of an unknown kind; expected .yaml, .glb, .gltf, .waretwin, .json, .bag, .log, .log.gz or a recording's folder");
   }
   return 0;
 }
@@ -194,7 +195,7 @@ Command add_inspect_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("inspect", "what is in a scenario, a glTF file, a recording, a laser log or a map");
   command
       ->add_option("FILE", options->file,
-                   "scenario, .glb, .gltf, recording's folder, CARMEN log, map.waretwin, cuboids.json or a run's folder")
+                   "scenario, .glb, .gltf, recording's folder, ROS 1 bag, CARMEN log, map.waretwin, cuboids.json or a run's folder")
       ->required();
   command->add_flag("--keys", options->keys, "of a scenario or recording: all configuration keys with type, range, value and meaning");
   command->add_option("--motion", options->motion_s, "of a scenario: runs what moves for S seconds, without sensors, and says how it went")

@@ -29,14 +29,16 @@ struct MapOptions {
 int map(const MapOptions& options) {
   options.common.apply();
   if (options.mapping.detector == "truth")
-    throw Error("--detector truth: a recording holds no true boxes; expected none, a model or a JSON file");
+    throw Error("--detector truth: a recording holds no true boxes; expected none, a model, or boxes in a file or folder");
   MapConfig config;
   config.mapper = chosen_mapper(options.mapping.profile, options.mapping.detector, options.mapping.rate_hz);
   if (!options.poses.empty()) config.mapper.poses = options.poses;
   config.frames = options.mapping.frames;
   config.resume = options.mapping.resume;
   // Other people's worlds have their zero anywhere, often at the first camera; our own recordings have it on the floor.
-  if (!std::filesystem::exists(std::filesystem::path(options.recording) / "recording.yaml")) {
+  const std::filesystem::path recording = options.recording;
+  const auto folder_of_it = is_recording_file(recording) ? recording.parent_path() : recording;
+  if (!std::filesystem::exists(folder_of_it / "recording.yaml")) {
     config.mapper.segment.planes.ground = "lowest_plane";
   }
   if (!options.mapping.config_file.empty()) read_resolved_config(options.mapping.config_file, [&](Fields& f) { config.visit(f); });
@@ -60,6 +62,7 @@ int map(const MapOptions& options) {
     };
     result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
   }
+  for (const std::string& remark : stream->remarks()) spdlog::info("{}", remark);
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
   write_mapping(folder, result, options.recording, config.mapper.profile, config.output);
 
@@ -82,21 +85,25 @@ int map(const MapOptions& options) {
 
 Command add_map_command(CLI::App& program) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* command = program.add_subcommand("map", "the mapper on a recording (7-Scenes, 3DMatch or TUM RGB-D layout, CARMEN laser log)");
-  command->add_option("RECORDING", options->recording, "folder of a recording, or a CARMEN log (.log, .log.gz)")->required();
+  CLI::App* command = program.add_subcommand(
+      "map", "the mapper on a recording (TUM RGB-D, SceneNN, 7-Scenes or 3DMatch layout, ROS 1 bag, CARMEN laser log)");
+  command->add_option("RECORDING", options->recording, "folder of a recording, a ROS 1 bag (.bag), or a CARMEN log (.log, .log.gz)")
+      ->required();
   command->add_option("--out", options->out, "folder for the results; an earlier run's are replaced")->required()->type_name("DIR");
   options->mapping.add_to(*command,
                           "none (default: no objects); yolo: the shipped model conveyor, or that of --set mapper.model=MODEL; a model's "
-                          "folder, file or shipped name; a JSON file with boxes");
+                          "folder, file or shipped name; boxes made elsewhere: a JSON file, or a folder with a text file a frame");
   command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
       ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
   command->get_option("--config")->excludes("--poses");
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin map recordings/office --out out/office --detector models/yolo-coco\n"
+      "  waretwin map drive.bag --out out/drive --set recording.bag.preset=agiprobot --set recording.rotate_deg=180\n"
       "  waretwin map logs/freiburg.log.gz --out out/freiburg\n\n"
       "Of a laser log it is the trajectory alone, as poses of the laser (X_WL). "
       "The ground is the lowest horizontal plane (mapper.segment.planes.ground); in recordings with a recording.yaml it is at height 0.\n"
+      "docs/recordings.md says what each layout holds and how to bring your own bag.\n"
       "`waretwin inspect RECORDING --keys` lists every key for --set.");
   return {command, [options] { return map(*options); }};
 }

@@ -10,6 +10,7 @@
 #include "core/config.h"
 #include "harness/truth/truth_detector.h"
 #include "scenes/scenario.h"
+#include "sensors/recordings/ros_bag_config.h"
 #include "sim/simulated_stream.h"
 
 namespace waretwin {
@@ -19,6 +20,7 @@ struct RecordConfig {
   Scenario scenario;
   SimulationConfig simulation;
   TruthDetectorConfig truth_detector;
+  RosBagFormat bag;
   void visit(Fields& f);
 };
 
@@ -32,15 +34,19 @@ struct RecordSummary {
 };
 
 // Drives the whole route (or simulation.max_frames camera frames) through `scene`, which is config.scenario's (build_scene), and writes
-// what the sensors measured into `folder` (sensors/recordings/recording_writer.h). Beside it, for scoring and for nobody who maps:
+// what the sensors measured into `folder`, in one of recording_formats() (sensors/recordings/recording_writer.h). Formats that are
+// published with the camera's poses get the true ones; `map` takes them with --poses recorded, and where there is no laser. Beside it, for
+// scoring and for nobody who maps:
 //   truth.json            true cuboids with the share that the recorded frames saw
 //   truth_boxes.json      the true boxes of every frame, as `waretwin map --detector` takes them: what `run --detector truth` maps with
 //   trajectory_truth.tum  the true X_WB at every event
+//   NAME.xml              (scenenn; NAME is the folder's) the true cuboids as SceneNN annotates them
 //   config.yaml           scenario and simulation, resolved; `waretwin run SCENARIO --config` takes it
 // The folder appears when all is written. An earlier recording of ours is then replaced; throws Error for a folder that holds anything
 // else, for what the layout cannot hold, and where the disk is full. `progress`, after each event: share of the drive that is done, and
 // the summary so far; what it throws ends the recording and leaves nothing behind.
-RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const std::filesystem::path& folder,
-                           const std::string& source, const std::function<void(double, const RecordSummary&)>& progress = {});
+RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const std::string& format,
+                           const std::filesystem::path& folder, const std::string& source,
+                           const std::function<void(double, const RecordSummary&)>& progress = {});
 
 }  // namespace waretwin

@@ -57,23 +57,16 @@ class Reader {
     }
   }
 
-  CarmenLog finish() {
-    if (scans_.empty()) throw Error(file_, "holds no FLASER line; expected a CARMEN log with laser scans");
-    CarmenLog log;
-    log.info.source = file_.filename().string();
-    log.info.has_odometry = has_odometry_;
-    log.info.lasers["laser"] = {make_upright_pose(offset_, 0.0, 0.0, 0.0), rate_hz()};
-    for (SensorEvent& event : events_) {
-      LaserScan* scan = std::get_if<LaserScan>(&event);
-      if (scan == nullptr) continue;
-      scan->range_max = range_max_;
-      for (float& range : scan->ranges) range = range < range_max_ ? range : 0.0f;
+  RecordingContents finish() {
+    if (contents_.scans.empty()) throw Error(file_, "holds no FLASER line; expected a CARMEN log with laser scans");
+    contents_.has_laser = true;
+    contents_.X_BL = make_upright_pose(offset_, 0.0, 0.0, 0.0);
+    contents_.laser_rate_hz = rate_hz();
+    for (LaserScan& scan : contents_.scans) {
+      scan.range_max = range_max_;
+      for (float& range : scan.ranges) range = range < range_max_ ? range : 0.0f;
     }
-    log.events = std::move(events_);
-    std::stable_sort(log.events.begin(), log.events.end(),
-                     [](const SensorEvent& a, const SensorEvent& b) { return stamp_of(a) < stamp_of(b); });
-    log.info.duration_s = to_seconds(stamp_of(log.events.back()) - stamp_of(log.events.front()));
-    return log;
+    return std::move(contents_);
   }
 
  private:
@@ -116,8 +109,7 @@ class Reader {
       scan.ranges.push_back(static_cast<float>(range));
     }
     for (std::size_t i = count + 2; i < count + 8; ++i) number(i);  // unused, but a line that breaks off in them is damaged
-    scans_.push_back(scan.stamp);
-    events_.emplace_back(std::move(scan));
+    contents_.scans.push_back(std::move(scan));
   }
 
   void take_odometry() {
@@ -130,9 +122,9 @@ class Reader {
     const Stamp stamp = parse_text_stamp(file_, line_, words_[7]);
     if (stamp != 0) {
       if (last_line_) X_OB_ = X_OB_ * (last_line_->inverse() * X_here);
-      events_.emplace_back(
+      contents_.readings.push_back(
           OdometryReading{stamp, "odometry", make_upright_pose(X_OB_.translation().x(), X_OB_.translation().y(), 0.0, yaw_of(X_OB_))});
-      has_odometry_ = true;
+      contents_.has_odometry = true;
     }
     last_line_ = X_here;
   }
@@ -150,7 +142,8 @@ class Reader {
   // By the median time between scans: logs have gaps.
   double rate_hz() const {
     std::vector<Stamp> steps;
-    for (std::size_t i = 1; i < scans_.size(); ++i) steps.push_back(std::abs(scans_[i] - scans_[i - 1]));
+    const std::vector<LaserScan>& scans = contents_.scans;
+    for (std::size_t i = 1; i < scans.size(); ++i) steps.push_back(std::abs(scans[i].stamp - scans[i - 1].stamp));
     if (steps.empty()) return 0.0;
     std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
     const Stamp median = steps[steps.size() / 2];
@@ -160,18 +153,16 @@ class Reader {
   fs::path file_;
   int line_ = 0;
   std::vector<std::string> words_;
-  std::vector<SensorEvent> events_;
-  std::vector<Stamp> scans_;
+  RecordingContents contents_;
   std::optional<Pose> last_line_;  // of the last ODOM line, stamped or not
   Pose X_OB_ = Pose::Identity();   // put together from the steps
-  bool has_odometry_ = false;
   double range_max_ = kRangeMax;
   double offset_ = 0.0;
 };
 
 }  // namespace
 
-CarmenLog read_carmen_log(const fs::path& file) {
+RecordingContents read_carmen_log(const fs::path& file) {
   Reader reader(file);
   std::istringstream in(unpacked(file));
   std::string text;

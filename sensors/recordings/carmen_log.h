@@ -2,16 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
-#include "sensors/sensor_stream.h"
+#include "sensors/recordings/contents.h"
 
 namespace waretwin {
-
-struct CarmenLog {
-  StreamInfo info;                  // laser "laser", odometry, no camera; the vehicle starts at the world's origin
-  std::vector<SensorEvent> events;  // sorted by stamp; of one stamp in the order of the file
-};
 
 // Lines that are read, by their first word; all others are passed over:
 //   FLASER n r_1 ... r_n  x y theta  odom_x odom_y odom_theta  ipc_timestamp ipc_hostname logger_timestamp
@@ -26,6 +20,6 @@ struct CarmenLog {
 // is no reading: odometry is put together again from the motion between each stamped line and the line before it, in which the corrected
 // pose cancels out.
 // Throws Error with file and line for a malformed line, for a log without scans, and for a damaged .gz.
-CarmenLog read_carmen_log(const std::filesystem::path& file);
+RecordingContents read_carmen_log(const std::filesystem::path& file);
 
 }  // namespace waretwin

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "sensors/recordings/contents.h"
+#include "sensors/recordings/numbered_frames.h"
 #include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
@@ -16,27 +17,12 @@ namespace {
 
 constexpr const char* kIntrinsics = "camera-intrinsics.txt";
 
-// "frame-000123.color.png" -> 123; nothing for other names.
-std::optional<std::int64_t> colour_number(const std::string& name) {
-  const std::string head = "frame-";
-  for (const std::string tail : {".color.png", ".color.jpg"}) {
-    if (name.size() <= head.size() + tail.size() || name.rfind(head, 0) != 0) continue;
-    const std::string digits = name.substr(head.size(), name.size() - head.size() - tail.size());
-    if (name.substr(head.size() + digits.size()) != tail || digits.size() > 9) continue;
-    if (std::all_of(digits.begin(), digits.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) return std::stoll(digits);
-  }
-  return std::nullopt;
-}
-
+// Colour pictures by number.
 std::map<std::int64_t, fs::path> colour_files(const fs::path& folder) {
-  std::map<std::int64_t, fs::path> files;
-  std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(folder, failure)) {
-    const auto number = colour_number(entry.path().filename().string());
-    if (!number) continue;
-    const auto inserted = files.emplace(*number, entry.path());
-    if (!inserted.second) {
-      throw Error(folder, "holds two colour pictures of frame " + std::to_string(*number) + "; expected .color.png or .color.jpg");
+  std::map<std::int64_t, fs::path> files = numbered_files(folder, "frame-", ".color.png");
+  for (const auto& [number, file] : numbered_files(folder, "frame-", ".color.jpg")) {
+    if (!files.emplace(number, file).second) {
+      throw Error(folder, "holds two colour pictures of frame " + std::to_string(number) + "; expected .color.png or .color.jpg");
     }
   }
   return files;
@@ -64,34 +50,6 @@ std::vector<double> read_intrinsics(const fs::path& file) {
   return {k[0], k[4], k[2], k[5]};
 }
 
-// Nothing for a lost camera.
-std::optional<Pose> read_pose(const fs::path& file) {
-  const std::vector<double> m = read_matrix(file, 4, 4);
-  if (!std::all_of(m.begin(), m.end(), [](double v) { return std::isfinite(v); })) return std::nullopt;
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) rotation(row, column) = m[static_cast<std::size_t>(4 * row + column)];
-    translation[row] = m[static_cast<std::size_t>(4 * row + 3)];
-  }
-  const bool last_row = std::abs(m[12]) + std::abs(m[13]) + std::abs(m[14]) + std::abs(m[15] - 1) < 1e-6;
-  const std::optional<Pose> pose = rigid_pose(rotation, translation);
-  if (!pose || !last_row) throw Error(file, "is not a rigid motion; expected a rotation, a translation and the row 0 0 0 1");
-  return pose;
-}
-
-// Whichever world axis the cameras' upper edges point along on average.
-Eigen::Vector3d guess_up(const std::vector<RecordedFrame>& frames) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const RecordedFrame& frame : frames) {
-    if (frame.X_WC) sum -= frame.X_WC->linear().col(1);
-  }
-  if (sum.isZero()) return -Eigen::Vector3d::UnitY();
-  Eigen::Index axis = 0;
-  sum.cwiseAbs().maxCoeff(&axis);
-  return (sum[axis] > 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(axis);
-}
-
 }  // namespace
 
 bool is_frame_folder(const fs::path& folder) { return fs::exists(folder / kIntrinsics) || !colour_files(folder).empty(); }
@@ -100,19 +58,19 @@ RecordingContents read_frame_folder(const fs::path& folder, const RecordingConfi
   RecordingContents contents;
   contents.rate_hz = config.frame_rate_hz;
   if (config.intrinsics.empty()) contents.intrinsics = read_intrinsics(folder / kIntrinsics);
+  const FrameStamps stamps(folder, config.frame_rate_hz);
   bool some_pose = false;
   std::optional<fs::path> without_pose;
   for (const auto& [number, colour] : colour_files(folder)) {
     const std::string stem = colour.filename().string().substr(0, colour.filename().string().find('.'));
-    RecordedFrame frame;
-    frame.stamp = static_cast<Stamp>(std::llround(static_cast<double>(number) / config.frame_rate_hz * 1e9));
-    frame.colour = colour;
-    frame.depth = folder / (stem + ".depth.png");
-    if (!fs::exists(frame.depth)) throw Error(frame.depth, "no such file; expected a depth image for each colour picture");
+    const fs::path depth = folder / (stem + ".depth.png");
+    if (!fs::exists(depth)) throw Error(depth, "no such file; expected a depth image for each colour picture");
+    const Stamp stamp = stamps.of(number);
+    RecordedFrame frame{stamp, stamp, stored_colour(colour), stored_depth(depth)};
     const fs::path pose = folder / (stem + ".pose.txt");
     if (fs::exists(pose)) {
       some_pose = true;
-      frame.X_WC = read_pose(pose);
+      frame.X_WC = matrix_pose(read_matrix(pose, 4, 4), pose, 0);
       if (!frame.X_WC) {
         ++contents.lost_frames;
         continue;

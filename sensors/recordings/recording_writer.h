@@ -2,37 +2,44 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "core/files.h"
 #include "sensors/recordings/recording.h"
+#include "sensors/recordings/ros_bag_config.h"
 
 namespace waretwin {
 
-// What recording.yaml says of a stream. Throws Error where the layout cannot hold it: it has room for one camera and one laser, and is no
-// recording without either.
-RecordingCalibration calibration_of(const StreamInfo& info);
-
-// The TUM RGB-D layout: rgb.txt and rgb/, depth.txt and depth/ in millimetres, depth_native.txt and depth_native/ where the camera has
-// a view of its own, laser.txt, odometry.txt, recording.yaml. No groundtruth.txt: a mapper that reads the folder learns no true pose.
 // Everything goes to disk at once, so that a long drive takes no more memory than a short one.
 class RecordingWriter {
  public:
-  // Into an empty folder; `source` is the comment at the top of recording.yaml. Throws Error as calibration_of does and where the folder
-  // cannot be written.
-  RecordingWriter(const std::filesystem::path& folder, const StreamInfo& info, const std::string& source);
-
+  virtual ~RecordingWriter() = default;
   // Events of the stream in its order; a frame's pictures are loaded. Throws Error where the disk is full.
-  void add(const OdometryReading& reading);
-  void add(const LaserScan& scan);
-  void add(const RgbdFrame& frame);
+  virtual void add(const OdometryReading& reading) = 0;
+  virtual void add(const LaserScan& scan) = 0;
+  virtual void add(const RgbdFrame& frame) = 0;
   // Closes the files; nothing may be added after it. Throws Error where not everything reached the disk.
-  void finish();
-
- private:
-  std::filesystem::path folder_;
-  int frames_ = 0;
-  std::optional<GrowingFile> colour_, depth_, native_, laser_, odometry_;
+  virtual void finish() = 0;
 };
+
+// The layouts that can be written (recording.h describes them), each with recording.yaml beside it:
+//   tum      rgb.txt and rgb/, depth.txt and depth/, depth_native.txt and depth_native/ where the camera has a view of its own, laser.txt,
+//            odometry.txt. No groundtruth.txt: a mapper that reads the folder learns no true pose.
+//   7scenes  frame-NNNNNN.color.png, .depth.png and .pose.txt, camera-intrinsics.txt, stamps.txt; laser, odometry and native depth as above
+//   scenenn  image/, depth/, timestamp.txt, trajectory.log, stamps.txt; the rest as above
+//   rosbag   recording.bag: /camera/rgb/{image_raw,camera_info}, /camera/depth_registered/{image_raw,camera_info},
+//            /camera/depth/{image_raw,camera_info} where the camera has a view of its own, /scan, /odom, /tf (odom to base_link),
+//            /tf_static
+// Depth is in millimetres. 7scenes and scenenn hold a pose for each frame: RgbdFrame::recorded_X_WC, where it is set.
+const std::vector<std::string>& recording_formats();
+
+// Into an empty folder; `source` is the comment at the top of recording.yaml. Throws Error as calibration_of does, for an unknown format,
+// where the folder cannot be written, and for rosbag in a build without librosbag-storage.
+std::unique_ptr<RecordingWriter> make_recording_writer(const std::string& format, const std::filesystem::path& folder,
+                                                       const StreamInfo& info, const std::string& source, const RosBagFormat& bag = {});
+
+// Whether a file or folder of this name in a recording's folder may be of the recording.
+bool is_recording_part(const std::string& name);
 
 }  // namespace waretwin

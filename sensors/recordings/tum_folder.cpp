@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "sensors/recordings/contents.h"
+#include "sensors/recordings/stamped_files.h"
 #include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
@@ -13,39 +14,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct StampedFile {
-  Stamp stamp = 0;
-  fs::path file;
-};
-
 struct StampedPose {
   Stamp stamp = 0;
   Pose X_WC = Pose::Identity();
 };
-
-template <class T>
-void sort_by_stamp(std::vector<T>& values) {
-  std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
-}
-
-std::vector<StampedFile> read_file_list(const fs::path& list) {
-  std::vector<StampedFile> files;
-  for (const TextLine& line : read_text_lines(list)) {
-    if (line.words.size() != 2) {
-      throw Error(list, line.line, "has " + std::to_string(line.words.size()) + " words; expected 'seconds file'");
-    }
-    const fs::path name = line.words[1];
-    const fs::path plain = name.lexically_normal();
-    if (name.is_absolute() || (!plain.empty() && *plain.begin() == "..")) {
-      throw Error(list, line.line, "'" + line.words[1] + "' leaves the folder; expected a file inside it");
-    }
-    const fs::path file = list.parent_path() / name;
-    if (!fs::exists(file)) throw Error(list, line.line, "'" + line.words[1] + "' does not exist");
-    files.push_back({parse_text_stamp(list, line.line, line.words[0]), file});
-  }
-  sort_by_stamp(files);
-  return files;
-}
 
 std::vector<StampedPose> read_trajectory(const fs::path& file) {
   std::vector<StampedPose> poses;
@@ -70,20 +42,10 @@ std::vector<StampedPose> read_trajectory(const fs::path& file) {
   return poses;
 }
 
-// Index of the nearest stamp; `sorted` is not empty.
-template <class T>
-std::size_t nearest(const std::vector<T>& sorted, Stamp stamp) {
-  const auto after = std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const T& value, Stamp s) { return value.stamp < s; });
-  if (after == sorted.begin()) return 0;
-  const auto before = after - 1;
-  if (after == sorted.end() || stamp - before->stamp <= after->stamp - stamp) return static_cast<std::size_t>(before - sorted.begin());
-  return static_cast<std::size_t>(after - sorted.begin());
-}
-
 // Between two poses that are both near the stamp, the way between them; near the end of a trajectory the last pose.
 std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Stamp stamp, Stamp tolerance) {
   if (poses.empty()) return std::nullopt;
-  const StampedPose& near = poses[nearest(poses, stamp)];
+  const StampedPose& near = poses[nearest_stamp(poses, stamp)];
   if (std::abs(near.stamp - stamp) > tolerance) return std::nullopt;
   const auto after = std::lower_bound(poses.begin(), poses.end(), stamp, [](const StampedPose& p, Stamp s) { return p.stamp < s; });
   if (after == poses.end() || after == poses.begin() || after->stamp == stamp) return near.X_WC;
@@ -116,26 +78,22 @@ RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig&
     contents.intrinsics = {517.3, 516.5, 318.6, 255.3};  // Freiburg 1, from the benchmark's page on its file formats
   }
   const std::vector<StampedFile> colours = read_file_list(folder / "rgb.txt");
-  const std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
-  std::vector<StampedFile> natives;
-  if (fs::exists(folder / "depth_native.txt")) natives = read_file_list(folder / "depth_native.txt");
+  std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
+  // Only what the clocks differ by matters here: the frame as a whole is shifted later, by the colour picture's.
+  for (StampedFile& depth : depths) depth.stamp += from_seconds(config.clock.depth_s - config.clock.colour_s);
   std::vector<StampedPose> poses;
   if (fs::exists(folder / "groundtruth.txt")) poses = read_trajectory(folder / "groundtruth.txt");
   const Stamp tolerance = from_seconds(config.association_s);
-  for (std::size_t i = 0; i < colours.size() && !depths.empty(); ++i) {
-    const StampedFile& depth = depths[nearest(depths, colours[i].stamp)];
-    if (std::abs(depth.stamp - colours[i].stamp) > tolerance || nearest(colours, depth.stamp) != i) continue;
-    fs::path native;
-    if (!natives.empty()) {
-      const StampedFile& near = natives[nearest(natives, depth.stamp)];
-      if (std::abs(near.stamp - depth.stamp) <= tolerance) native = near.file;
-    }
-    contents.frames.push_back({colours[i].stamp, colours[i].file, depth.file, native, pose_at(poses, colours[i].stamp, tolerance)});
+  for (const auto& [colour, depth] : pairs_by_stamp(colours, depths, tolerance)) {
+    RecordedFrame frame{colours[colour].stamp, depths[depth].stamp, stored_colour(colours[colour].file), stored_depth(depths[depth].file)};
+    frame.X_WC = pose_at(poses, frame.stamp, tolerance);
+    contents.frames.push_back(std::move(frame));
   }
   if (contents.frames.empty()) {
     throw Error(folder, "has no colour picture with a depth image within " + std::to_string(config.association_s) + " s (" +
                             std::to_string(colours.size()) + " in rgb.txt, " + std::to_string(depths.size()) + " in depth.txt)");
   }
+  remark_unpaired(contents, colours.size(), depths.size(), config.association_s);
   return contents;
 }
 

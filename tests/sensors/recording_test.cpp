@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -279,11 +281,150 @@ TEST(RecordingNumbers, BeyondTheRangeOfADoubleAreZeroOrInfinite) {
   EXPECT_ERROR(parse_text_number("f", 3, "2,5"), "f:3: '2,5' is not a number");
 }
 
+// Two frames, 1 and 2, as SceneNN's playback tool unpacks them.
+class SceneNnFolder : public FrameFolder {
+ protected:
+  SceneNnFolder() {
+    fs::remove_all(path());
+    for (const int number : {1, 2}) {
+      const std::string digits = "0000" + std::to_string(number) + ".png";
+      fs::create_directories(path() / "image");
+      fs::create_directories(path() / "depth");
+      write("image/image" + digits, encoded(".png", colour_image(10 + number)));
+      write("depth/depth" + digits, encoded(".png", depth_image(1234 + number)));
+    }
+    write("timestamp.txt", "1 1000000 1000500\n2 1033367 1033800\n");
+    write("trajectory.log", "0 0 1\n" + matrix_text(pose(0)) + "1 1 2\n" + matrix_text(pose(1)));
+  }
+  // The world's y points down.
+  static Pose pose(int index) {
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(index, 2, 3);
+    return pose;
+  }
+};
+
+TEST_F(SceneNnFolder, YieldsFramesWithStampsAndPoses) {
+  const auto recording = open_recording(path());
+  const StreamInfo& info = recording->info();
+  EXPECT_TRUE(info.has_recorded_poses);
+  EXPECT_EQ(info.up_W, -Eigen::Vector3d::UnitY());
+  EXPECT_EQ(info.cameras.at("camera").intrinsics.fx, 544.47329) << "the dataset's Asus camera";
+  EXPECT_TRUE(recording->remarks().empty());
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0].stamp, 1'000'000'000);
+  EXPECT_EQ(frames[1].stamp, 1'033'367'000);
+  EXPECT_EQ(frames[1].recorded_X_WC->matrix(), pose(1).matrix());
+  EXPECT_EQ(frames[1].depth.at<float>(3, 3), 1236 * 0.001f);
+  EXPECT_EQ(frames[1].depth.at<float>(0, 1), 0.0f) << "65535 is invalid";
+  EXPECT_EQ(frames[1].colour.at<cv::Vec3b>(0, 0)[0], 12);
+}
+
+TEST_F(SceneNnFolder, ReadsItsIntrinsicsAndExactStamps) {
+  fs::create_directories(path() / "intrinsic");
+  write("intrinsic/asus.ini", "depth_width 8\ndepth_height 6\nfx 50\nfy 51\n");
+  write("stamps.txt", "1 1.000000001\n2 1.5\n");
+  const auto recording = open_recording(path());
+  const Intrinsics& k = recording->info().cameras.at("camera").intrinsics;
+  EXPECT_EQ(std::tuple(k.fx, k.fy, k.cx, k.cy), std::tuple(50, 51, 4, 3));
+  EXPECT_EQ(all_frames(*recording)[0].stamp, 1'000'000'001);
+  write("intrinsic/asus.ini", "fx 50\n");
+  EXPECT_ERROR(open_recording(path()), "asus.ini", "has no fy above 0");
+  write("stamps.txt", "1 1\n");
+  write("intrinsic/asus.ini", "depth_width 8\ndepth_height 6\nfx 50\nfy 51\n");
+  EXPECT_ERROR(open_recording(path()), "stamps.txt", "no stamp for frame 2");
+}
+
+TEST_F(SceneNnFolder, SaysWhatIsLeftOutAndWhatIsDamaged) {
+  fs::remove(path() / "depth/depth00002.png");
+  EXPECT_EQ(open_recording(path())->remarks().front(), "1 pictures without a depth image are left out");
+  write("depth/depth00002.png", encoded(".png", depth_image(1)));
+  write("trajectory.log", "1 1 2\n" + matrix_text(pose(1)));
+  auto recording = open_recording(path());
+  EXPECT_EQ(recording->info().frame_count, 1);
+  EXPECT_EQ(recording->remarks().front(), "1 frames that trajectory.log does not name are left out");
+  write("trajectory.log", "0 0 1\nnan nan nan nan\nnan nan nan nan\nnan nan nan nan\n0 0 0 1\n1 1 2\n" + matrix_text(pose(1)));
+  EXPECT_EQ(open_recording(path())->lost_frames(), 1);
+  write("trajectory.log", "0 0 1\n1 0 0 0\n0 1 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_ERROR(open_recording(path()), "trajectory.log:3:", "expected a row of a 4 x 4 matrix");
+  write("trajectory.log", "0 0 1\n1 0 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "trajectory.log:1:", "is no entry of a trajectory");
+  write("trajectory.log", "0 0 1\n2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_ERROR(open_recording(path()), "trajectory.log:1:", "not a rigid motion");
+  fs::remove(path() / "trajectory.log");
+  EXPECT_FALSE(open_recording(path())->info().has_recorded_poses);
+  write("timestamp.txt", "1 1000000 1000500\n");
+  EXPECT_ERROR(open_recording(path()), "timestamp.txt", "no line for frame 2");
+  write("timestamp.txt", "1 soon 1\n");
+  EXPECT_ERROR(open_recording(path()), "timestamp.txt:1:", "'soon'");
+  fs::remove(path() / "timestamp.txt");
+  EXPECT_EQ(all_frames(*open_recording(path()))[0].stamp, 33'333'333) << "numbers at frame_rate_hz";
+}
+
+TEST_F(FrameFolder, PlacesAndTurnsWhatTheRecordingDoesNotSay) {
+  fs::remove(path() / "frame-000000.pose.txt");
+  fs::remove(path() / "frame-000003.pose.txt");
+  RecordingConfig config;
+  config.start = {1, 2, 90};
+  config.camera_mount = {0.1, 0, 1.4, 0, 45, 0};
+  config.rotate_deg = 180;
+  const auto recording = open_recording(path(), config);
+  EXPECT_TRUE(recording->info().X_WB_start.isApprox(make_upright_pose(1, 2, 0, std::numbers::pi / 2)));
+  const StreamInfo::Camera& camera = recording->info().cameras.at("camera");
+  EXPECT_TRUE(camera.X_BC.linear().col(2).isApprox(Eigen::Vector3d(std::sqrt(0.5), 0, -std::sqrt(0.5)))) << "45 deg down";
+  EXPECT_EQ(camera.intrinsics.cx, 8 - 1 - 3.5);
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  EXPECT_EQ(frames[0].depth.at<float>(5, 7), 0.0f) << "the stored picture's first pixel";
+  EXPECT_EQ(frames[0].depth.at<float>(0, 0), 1234 * 0.001f);
+}
+
+// Recorded poses are those of the camera that took the stored pictures.
+TEST_F(FrameFolder, TurnsRecordedPosesWithThePictures) {
+  const Pose stored = *all_frames(*open_recording(path()))[1].recorded_X_WC;
+  RecordingConfig config;
+  config.rotate_deg = 90;
+  const auto recording = open_recording(path(), config);
+  const std::vector<RgbdFrame> frames = all_frames(*recording);
+  const Intrinsics& k = recording->info().cameras.at("camera").intrinsics;
+  EXPECT_EQ(std::tuple(k.width, k.height, k.fx, k.fy), std::tuple(6, 8, 510, 500));
+  // Stored pixel (2, 5) lies at (6 - 1 - 5, 2) after a quarter turn.
+  const Eigen::Vector3d before((2 - 3.5) / 500, (5 - 2.5) / 510, 1), after((0 - k.cx) / k.fx, (2 - k.cy) / k.fy, 1);
+  EXPECT_TRUE((*frames[1].recorded_X_WC * after).isApprox(stored * before, 1e-9));
+}
+
+TEST_F(FrameFolder, DepthInFloatMetresAndWithOtherInvalidValues) {
+  cv::Mat metres(6, 8, CV_32FC1, cv::Scalar(1.2346));
+  metres.at<float>(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  metres.at<float>(0, 1) = -1.0f;
+  metres.at<float>(0, 2) = 70.0f;
+  write("frame-000000.depth.png", encoded(".tiff", metres));
+  RecordingConfig config;
+  config.depth_invalid = {1237};
+  const std::vector<RgbdFrame> frames = all_frames(*open_recording(path(), config));
+  EXPECT_EQ(frames[0].depth.at<float>(3, 3), 1235 * 0.001f);
+  for (const int u : {0, 1, 2}) EXPECT_EQ(frames[0].depth.at<float>(0, u), 0.0f) << u;
+  EXPECT_EQ(cv::countNonZero(frames[1].depth), 0) << "all of it is 1237";
+}
+
 TEST(RecordingConfig, ChecksItsDirections) {
   RecordingConfig config;
   EXPECT_ERROR(read_config_text("up: [0, 0]", "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", "'up' is not a direction");
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{{"start: [1, 2]", "expected x_m, y_m, yaw_deg"},
+                                                                                   {"camera_mount: [1]", "pitch_deg"},
+                                                                                   {"rotate_deg: 45", "expected 0, 90, 180 or 270"},
+                                                                                   {"clock: {laser_s: x}", "laser_s"},
+                                                                                   {"bag: {preset: turtlebot}", "agiprobot"}}) {
+    config = {};
+    EXPECT_ERROR(read_config_text(text, "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", part);
+  }
   config = {};
-  EXPECT_ERROR(read_config_text("intrinsics: [1]", "c.yaml", [&](Fields& f) { config.visit(f); }), "four numbers");
+  read_config_text("bag: {preset: agiprobot, depth_topic: /mine}", "c.yaml", [&](Fields& f) { config.visit(f); });
+  EXPECT_EQ(config.bag.colour_topic, "/camera/rgb/image_raw");
+  EXPECT_EQ(config.bag.depth_topic, "/mine") << "keys go over the preset";
+  config = {};
+  EXPECT_ERROR(read_config_text("intrinsics: [1]", "c.yaml", [&](Fields& f) { config.visit(f); }),
+               "has 1 numbers; expected fx, fy, cx, cy");
 }
 
 TEST(RealRecordings, SevenScenesPlays) {

@@ -1,0 +1,41 @@
+#include "sensors/recordings/stamped_files.h"
+
+#include <string>
+
+#include "core/error.h"
+#include "sensors/recordings/text_formats.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+std::vector<StampedFile> read_file_list(const fs::path& list) {
+  std::vector<StampedFile> files;
+  for (const TextLine& line : read_text_lines(list)) {
+    if (line.words.size() != 2) {
+      throw Error(list, line.line, "has " + std::to_string(line.words.size()) + " words; expected 'seconds file'");
+    }
+    const fs::path name = line.words[1];
+    const fs::path plain = name.lexically_normal();
+    if (name.is_absolute() || (!plain.empty() && *plain.begin() == "..")) {
+      throw Error(list, line.line, "'" + line.words[1] + "' leaves the folder; expected a file inside it");
+    }
+    const fs::path file = list.parent_path() / name;
+    if (!fs::exists(file)) throw Error(list, line.line, "'" + line.words[1] + "' does not exist");
+    files.push_back({parse_text_stamp(list, line.line, line.words[0]), file});
+  }
+  sort_by_stamp(files);
+  return files;
+}
+
+void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size_t depths, double tolerance_s) {
+  const auto say = [&](std::size_t count, const std::string& what, const std::string& partner) {
+    if (count == contents.frames.size()) return;
+    contents.remarks.push_back(std::to_string(count - contents.frames.size()) + " of " + std::to_string(count) + " " + what + " have no " +
+                               partner + " within " + std::to_string(tolerance_s) + " s and are left out");
+  };
+  say(colours, "colour pictures", "depth image");
+  say(depths, "depth images", "colour picture");
+}
+
+}  // namespace waretwin

@@ -1,0 +1,54 @@
+// Lists of files by stamp, and which of two lists belong together. Internal to sensors/recordings.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "core/stamp.h"
+#include "sensors/recordings/contents.h"
+
+namespace waretwin {
+
+struct StampedFile {
+  Stamp stamp = 0;
+  std::filesystem::path file;
+};
+
+// Lines "seconds file", sorted by stamp; files relative to the list. Throws Error with file and line for a malformed line, and for a file
+// that is missing or outside the list's folder.
+std::vector<StampedFile> read_file_list(const std::filesystem::path& list);
+
+template <class T>
+void sort_by_stamp(std::vector<T>& values) {
+  std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
+}
+
+// Index of the nearest stamp; `sorted` is not empty.
+template <class T>
+std::size_t nearest_stamp(const std::vector<T>& sorted, Stamp stamp) {
+  const auto after = std::lower_bound(sorted.begin(), sorted.end(), stamp, [](const T& value, Stamp s) { return value.stamp < s; });
+  if (after == sorted.begin()) return 0;
+  const auto before = after - 1;
+  if (after == sorted.end() || stamp - before->stamp <= after->stamp - stamp) return static_cast<std::size_t>(before - sorted.begin());
+  return static_cast<std::size_t>(after - sorted.begin());
+}
+
+// Indices of what belongs together: each is the other's nearest, at most `tolerance` apart. Cameras of unequal rates leave the rest out.
+template <class A, class B>
+std::vector<std::pair<std::size_t, std::size_t>> pairs_by_stamp(const std::vector<A>& a, const std::vector<B>& b, Stamp tolerance) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < a.size() && !b.empty(); ++i) {
+    const std::size_t k = nearest_stamp(b, a[i].stamp);
+    const Stamp apart = b[k].stamp < a[i].stamp ? a[i].stamp - b[k].stamp : b[k].stamp - a[i].stamp;
+    if (apart <= tolerance && nearest_stamp(a, b[k].stamp) == i) pairs.emplace_back(i, k);
+  }
+  return pairs;
+}
+
+// Says how many pictures stayed without a partner.
+void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size_t depths, double tolerance_s);
+
+}  // namespace waretwin
