@@ -63,7 +63,7 @@ std::vector<std::int32_t> label_pixels(const Segmentation& segmentation, const s
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, Stages stages, const StreamInfo& info)
-    : config_(config), stages_(std::move(stages)), info_(info), own_body_(info) {
+    : config_(config), stages_(std::move(stages)), info_(info), own_body_(info), schedule_(config.rate_hz) {
   X_WR_ = world_from_recording(info);
   map_.X_RW = X_WR_.inverse();
   map_.volume = std::make_unique<TsdfVolume>(config.integrate);
@@ -113,22 +113,9 @@ void Mapper::take(LaserScan scan) {
   pending_localise_ms_ += watch.lap();
 }
 
-// Each camera has the mapping rate for itself.
-bool Mapper::due(const RgbdFrame& frame) {
-  if (config_.rate_hz <= 0.0) return true;
-  if (!first_frame_) first_frame_ = frame.stamp;
-  // A frame that misses its slot by rounding of stamps still belongs to it.
-  constexpr double kSlack = 1e-3;
-  const auto slot = static_cast<std::int64_t>(std::floor(to_seconds(frame.stamp - *first_frame_) * config_.rate_hz + kSlack));
-  const auto [last, is_new] = last_slots_.try_emplace(frame.sensor, slot);
-  if (!is_new && slot <= last->second) return false;
-  last->second = slot;
-  return true;
-}
-
 void Mapper::take(RgbdFrame frame) {
   ++map_.frames_seen;
-  if (!due(frame)) {
+  if (!schedule_.due(frame.sensor, frame.stamp)) {
     ++map_.frames_dropped_by_rate;
     return;
   }

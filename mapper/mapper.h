@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mapper/frame_schedule.h"
 #include "mapper/mapper_config.h"
 #include "mapper/object_list.h"
 #include "mapper/output/map_archive.h"
@@ -77,7 +78,6 @@ class Mapper {
   void take(const OdometryReading& reading);
   void take(LaserScan scan);
   void take(RgbdFrame frame);
-  bool due(const RgbdFrame& frame);
   void map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport report);
 
   MapperConfig config_;
@@ -88,8 +88,7 @@ class Mapper {
   double pending_localise_ms_ = 0.0;
   Pose X_WR_ = Pose::Identity();
   std::optional<Stamp> last_stamp_;
-  std::optional<Stamp> first_frame_;
-  std::map<std::string, std::int64_t> last_slots_;  // of the mapping rate, by camera
+  FrameSchedule schedule_;
 };
 
 }  // namespace waretwin

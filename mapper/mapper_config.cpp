@@ -36,11 +36,11 @@ void MapperConfig::visit(Fields& f) {
   f("rate_hz", rate_hz, "frames mapped a second, those in between are dropped; 0 = every frame", {.min = 0, .max = 1000});
   f("poses", poses, "where the vehicle's poses come from; auto: laser, else recorded, else odometry",
     {.choices = {"auto", "laser", "odometry", "recorded"}});
-  f("detector", detector, "where the boxes come from: a network (model), a file (boxes), or nowhere",
+  f("detector", detector, "where the boxes come from: a network (model), files (boxes), or nowhere",
     {.choices = {"yolo", "boxes", "none"}});
   f("model", model,
     "detector: a folder, a .cfg, .weights or .onnx file, or the name of a shipped model; empty: the shipped model conveyor");
-  f("boxes", boxes, "JSON file with boxes by frame stamp");
+  f("boxes", boxes, "boxes by frame stamp: a JSON file, or a folder with a text file a frame");
   f("objects", objects, "how objects come about: accumulated points, as published, or the evidence of all rays",
     {.choices = {"points", "evidence"}});
   f("label_margin_m", label_margin_m,

@@ -49,8 +49,9 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
     return std::make_unique<YoloDetector>(model_or_shipped(config.model), config.detect);
   }
   if (config.detector == "boxes") {
-    if (config.boxes.empty()) throw Error("mapper.boxes: no file; expected a JSON file with boxes by frame stamp");
-    return std::make_unique<BoxesDetector>(config.boxes);
+    if (config.boxes.empty())
+      throw Error("mapper.boxes: no file; expected a JSON file with boxes by frame stamp, or a folder of text files");
+    return std::make_unique<BoxesDetector>(config.boxes, config.detect);
   }
   return std::make_unique<NoDetector>();
 }

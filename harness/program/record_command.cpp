@@ -53,11 +53,12 @@ int record(const RecordOptions& options) {
   {
     const InterruptWatch watch;
     Progress progress("record", options.common.quiet);
-    summary = record_drive(config, scene, options.format, options.out, "scenario " + options.scenario,
+    summary = record_drive(config, scene, record_plan(options.format), options.out, "scenario " + options.scenario,
                            [&](double done, const RecordSummary& so_far) {
                              watch.check("nothing was recorded");
                              progress.update(done, std::to_string(so_far.frames) + " frames, " + std::to_string(so_far.scans) + " scans");
-                           });
+                           })
+                  .summary;
   }
   std::cout << summary.frames << " frames, " << summary.scans << " scans and " << summary.readings << " odometry readings in "
             << summary.duration_s << " s\nrecording in " << options.out << " (waretwin map " << options.out << " --out DIR)\n";

@@ -16,11 +16,13 @@
 #include "harness/gate/comparison_junit.h"
 #include "harness/program/common_options.h"
 #include "harness/program/gate_options.h"
+#include "harness/program/interrupt.h"
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
 #include "harness/program/suite_options.h"
 #include "harness/report/report_file.h"
 #include "harness/run/budget.h"
+#include "harness/run/external_run.h"
 #include "harness/run/run_choice.h"
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
@@ -28,6 +30,7 @@
 #include "harness/score/score_json.h"
 #include "mapper/detect/shipped_models.h"
 #include "mapper/detect/yolo_detector.h"
+#include "sensors/recordings/recording_writer.h"
 
 namespace waretwin {
 
@@ -39,7 +42,9 @@ struct RunOptions {
   GateOptions gate;
   SuiteOptions suite;
   std::string scenario, out, baseline;
-  bool budget = false;
+  bool budget = false, keep_recording = false;
+  std::string mapper, format;
+  std::optional<double> mapper_timeout_s;
   std::string poses, depth = "sensor", association = "map";
 };
 
@@ -53,6 +58,10 @@ RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
                                  .rate_hz = mapping.rate_hz,
                                  .frames = mapping.frames,
                                  .resume = mapping.resume});
+  if (!options.mapper.empty()) config.external_mapper.command = options.mapper;
+  if (!options.format.empty()) config.external_mapper.format = options.format;
+  if (options.mapper_timeout_s) config.external_mapper.timeout_s = *options.mapper_timeout_s;
+  if (options.keep_recording) config.external_mapper.keep_recording = true;
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
   for (Setting& setting : given) settings.push_back(std::move(setting));
@@ -88,6 +97,24 @@ void warn_of_strange_classes(const RunConfig& config, const Scene& scene) {
                list(strange), list(known));
 }
 
+// What a mapper of the user's is told by other options, but for those that say what it is given.
+void expect_no_own_mapper_options(const RunOptions& options) {
+  const auto& detector = options.mapping.detector;
+  if (detector && *detector != "truth" && *detector != "none") {
+    throw Error("--detector " + *detector + ": with --mapper expected truth ({boxes} are then the true ones) or none");
+  }
+  if (!options.poses.empty() && options.poses != "truth") {
+    throw Error("--poses " + options.poses + ": with --mapper expected truth (the recording then holds the camera's poses)");
+  }
+}
+
+void print_explanations(const ComparedLists& objects) {
+  for (const Explanation& line : objects.explanations) {
+    std::cout << (line.truth_id ? "object " + std::to_string(*line.truth_id) : "mapped object " + std::to_string(*line.map_id)) << ": "
+              << line.text << "\n";
+  }
+}
+
 bool worse_than(const JudgedScore& baseline, const Tolerances& tolerances, const RunOptions& options, const RunScore& score,
                 RunFolder& folder) {
   const Comparison comparison = compare_scores(baseline, judged_score(score_json(score), folder.file("score.json")), tolerances);
@@ -103,9 +130,55 @@ bool worse_than(const JudgedScore& baseline, const Tolerances& tolerances, const
   return comparison.worse();
 }
 
+// A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
+int contacts_or(int code, const RunScore& score) {
+  if (!score.motion || score.motion->contacts.empty()) return code;
+  for (const RobotContact& contact : score.motion->contacts) spdlog::error("{}", contact_text(contact));
+  return 1;
+}
+
+int run_with_external_mapper(const RunOptions& options, const RunConfig& config, const std::shared_ptr<const Scene>& scene,
+                             const std::function<RunFolder&()>& ready, const std::optional<JudgedScore>& baseline,
+                             const Tolerances& tolerances) {
+  ExternalRunResult result;
+  RunFolder* folder = nullptr;
+  {
+    const InterruptWatch watch;
+    Progress progress("run", options.common.quiet);
+    result = run_external(
+        config, scene, [&]() -> RunFolder& { return *(folder = &ready()); },
+        [&](double done, const std::string& words) {
+          watch.check("nothing was scored");
+          progress.update(done, words);
+        });
+  }
+  const ShellResult& shell = result.shell;
+  if (!result.score) {
+    for (const std::string& line : result.last_words) std::cerr << "  " << line << "\n";
+    if (shell.timed_out) {
+      spdlog::error("the mapper was ended after {:.0f} s (--mapper-timeout); see {}", shell.wall_s,
+                    folder->file("mapper/stderr.log").string());
+    } else {
+      spdlog::error("the mapper ended with exit code {} after {:.1f} s; see {}", shell.exit_code, shell.wall_s,
+                    folder->file("mapper/stderr.log").string());
+    }
+    return 1;
+  }
+  const RunScore& score = *result.score;
+  print_summary("as mapped", score.objects.plain.summary);
+  if (score.objects.aligned) print_summary("aligned  ", score.objects.aligned->summary);
+  print_explanations(score.objects);
+  std::cout << "the mapper took " << shell.wall_s << " s and " << shell.peak_rss_mb << " MB\ndigest " << score.digest << "\nresults in "
+            << options.out << " (report.html, table6.md, score.json, mapper/)\n";
+  const bool got_worse = baseline && worse_than(*baseline, tolerances, options, score, *folder);
+  if (baseline) write_report(folder->path(), ReportKind::kRun);
+  return contacts_or(got_worse ? 1 : 0, score);
+}
+
 int run(const RunOptions& options) {
   options.common.apply();
   if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.out);
+  if (!options.mapper.empty()) expect_no_own_mapper_options(options);
   if (options.scenario.empty()) throw Error("no hall; expected SCENARIO, or --suite SUITE");
   std::vector<Setting> settings = options.common.settings();
   const std::vector<Setting> of_tolerances = take_tolerance_settings(settings);
@@ -130,6 +203,13 @@ int run(const RunOptions& options) {
     RunConfig resolved = config;
     folder->write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
   };
+  if (!config.external_mapper.command.empty()) {
+    const auto made = [&]() -> RunFolder& {
+      ready();
+      return *folder;
+    };
+    return run_with_external_mapper(options, config, scene, made, baseline, tolerances);
+  }
   warn_of_strange_classes(config, *scene);
   ClosedLoopResult result;
   {
@@ -141,10 +221,7 @@ int run(const RunOptions& options) {
   write_closed_loop(*folder, result, config.output);
   print_summary("as mapped", result.score.objects.plain.summary);
   if (result.score.objects.aligned) print_summary("aligned  ", result.score.objects.aligned->summary);
-  for (const Explanation& line : result.score.objects.explanations) {
-    std::cout << (line.truth_id ? "object " + std::to_string(*line.truth_id) : "mapped object " + std::to_string(*line.map_id)) << ": "
-              << line.text << "\n";
-  }
+  print_explanations(result.score.objects);
   if (options.budget) {
     Progress progress("budget", options.common.quiet);
     const std::vector<BudgetRow> rows = run_budget(config, scene, result.truth, [&](double done) { progress.update(done, ""); });
@@ -155,10 +232,7 @@ int run(const RunOptions& options) {
   const bool got_worse = baseline && worse_than(*baseline, tolerances, options, result.score, *folder);
   // Once more, with budget.md and baseline.md.
   if (options.budget || baseline) write_report(folder->path(), ReportKind::kRun);
-  if (!result.score.motion || result.score.motion->contacts.empty()) return got_worse ? 1 : 0;
-  // A route through a station is a mistake of the scenario, or of whoever plans the route: the map that came of it is no answer.
-  for (const RobotContact& contact : result.score.motion->contacts) spdlog::error("{}", contact_text(contact));
-  return 1;
+  return contacts_or(got_worse ? 1 : 0, result.score);
 }
 
 }  // namespace
@@ -171,7 +245,7 @@ Command add_run_command(CLI::App& program) {
   options->mapping.add_to(
       *command,
       "yolo: the shipped model conveyor, or that of --set mapper.model=MODEL (default); a model's folder, file or shipped name; "
-      "truth: true boxes; none; a JSON file with boxes");
+      "truth: true boxes; none; boxes made elsewhere: a JSON file, or a folder with a text file a frame");
   command->add_option("--poses", options->poses, "laser (default), odometry or truth")
       ->check(CLI::IsMember({"laser", "odometry", "truth"}));
   command->add_option("--depth", options->depth, "sensor or truth")->capture_default_str()->check(CLI::IsMember({"sensor", "truth"}));
@@ -181,6 +255,22 @@ Command add_run_command(CLI::App& program) {
                  "drives once more (with up to six maps in memory) and maps with the truth in place of each stage in turn: budget.md says "
                  "what each stage costs")
       ->excludes("--resume");
+  CLI::Option* own_mapper =
+      command
+          ->add_option("--mapper", options->mapper,
+                       "another mapper in place of ours: records the drive, runs this shell line, in which {recording} and {out} stand for "
+                       "folders, and scores the cuboids.json that it leaves in {out} (docs/mappers.md)")
+          ->type_name("COMMAND");
+  command->add_option("--mapper-timeout", options->mapper_timeout_s, "ends the command after S seconds (default 3600; 0: never)")
+      ->type_name("S")
+      ->check(number_from_to(0.0, 1e7))
+      ->needs(own_mapper);
+  command->add_option("--format", options->format, "of the recording that it gets, as for record (default tum)")
+      ->check(CLI::IsMember(recording_formats()))
+      ->needs(own_mapper);
+  command->add_flag("--keep-recording", options->keep_recording, "leaves the recording in DIR/mapper/recording")->needs(own_mapper);
+  for (const char* ours : {"--profile", "--resume", "--association", "--budget", "--config"})
+    own_mapper->excludes(command->get_option(ours));
   CLI::Option* baseline =
       command
           ->add_option("--baseline", options->baseline,
@@ -193,13 +283,14 @@ Command add_run_command(CLI::App& program) {
   options->suite.add_to(*command);
   // Each run of a suite has its own.
   for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--config", "--poses", "--depth",
-                          "--association", "--budget", "--baseline"})
+                          "--association", "--budget", "--baseline", "--mapper"})
     command->get_option("--suite")->excludes(own);
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin run scenes/agiprobot/scenario.yaml --out out/agiprobot --profile paper --detector truth\n"
       "  waretwin run scenes/agiprobot/scenario.yaml --out out/again --config out/agiprobot/config.yaml\n"
       "  waretwin run scenes/agiprobot/scenario.yaml --out out/branch --baseline out/main/score.json --junit out/branch.xml\n"
+      "  waretwin run scenes/agiprobot/scenario.yaml --out out/theirs --rate 2 --mapper \"my_mapper {recording} {out}\"\n"
       "  waretwin run --suite scenes/smoke.yaml --out out/smoke\n\n"
       "`waretwin inspect SCENARIO --keys` lists every key for --set; with --baseline there is tolerances.MEASURE, too (waretwin compare).");
   return {command, [options] { return run(*options); }};

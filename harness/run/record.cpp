@@ -12,6 +12,7 @@
 #include "harness/score/scenenn_annotation.h"
 #include "harness/score/trajectory_file.h"
 #include "harness/truth/true_list.h"
+#include "mapper/frame_schedule.h"
 #include "sensors/recordings/recording_writer.h"
 
 namespace waretwin {
@@ -28,8 +29,8 @@ std::string annotation_name(const fs::path& folder) {
 
 // A folder is replaced as a whole, so nothing but an earlier recording of a simulation may stand in it: a mistyped --out must not cost
 // anybody's files, and a real recording cannot be made again.
-void expect_replaceable(const fs::path& folder) {
-  static const std::set<std::string> beside = {"truth.json", "config.yaml", "trajectory_truth.tum", "truth_boxes.json"};
+void expect_replaceable(const fs::path& folder, bool truth_beside) {
+  static const std::set<std::string> beside = {"truth.json", "config.yaml", "trajectory_truth.tum", "truth_boxes.json", "boxes.json"};
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) throw Error(folder, "is a file; expected a folder or a new name");
   if (fs::is_empty(folder)) return;
@@ -40,22 +41,34 @@ void expect_replaceable(const fs::path& folder) {
                               "', which is no part of a simulated recording; expected a new name, an empty folder or an earlier recording");
     }
   }
-  for (const char* name : {"recording.yaml", "trajectory_truth.tum"}) {
-    if (!fs::exists(folder / name)) {
-      throw Error(folder, "holds no " + std::string(name) +
-                              ", as a simulated recording does; expected a new name, an empty folder or an earlier recording");
+  for (const std::string name : {"recording.yaml", "trajectory_truth.tum"}) {
+    if (!fs::exists(folder / name) && (truth_beside || name == "recording.yaml")) {
+      throw Error(folder,
+                  "holds no " + name + ", as a simulated recording does; expected a new name, an empty folder or an earlier recording");
     }
   }
 }
 
-// One frame of the file that BoxesDetector reads.
-std::string boxes_entry(Stamp stamp, const std::vector<Detection>& detections) {
-  nlohmann::json entry = {{"stamp", stamp}, {"detections", nlohmann::json::array()}};
-  for (const Detection& d : detections) {
-    entry["detections"].push_back({{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}});
+// The file that BoxesDetector reads, frame by frame.
+class BoxesFile {
+ public:
+  explicit BoxesFile(const fs::path& file) : file_(file) {}
+  void add(Stamp stamp, const std::vector<Detection>& detections) {
+    nlohmann::json entry = {{"stamp", stamp}, {"detections", nlohmann::json::array()}};
+    for (const Detection& d : detections) {
+      entry["detections"].push_back({{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}});
+    }
+    file_.append((frames_++ == 0 ? "{\"frames\":[\n" : ",\n") + entry.dump());
   }
-  return entry.dump();
-}
+  void close() {
+    file_.append(frames_ == 0 ? "{\"frames\":[]}\n" : "\n]}\n");
+    file_.close();
+  }
+
+ private:
+  GrowingFile file_;
+  int frames_ = 0;
+};
 
 }  // namespace
 
@@ -72,10 +85,17 @@ RecordConfig load_record_config(const fs::path& scenario, const SimulationConfig
   return config;
 }
 
-RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const std::string& format,
+RecordPlan record_plan(const std::string& format) {
+  RecordPlan plan;
+  plan.format = format;
+  plan.true_poses = format == "scenenn" || format == "7scenes";
+  return plan;
+}
+
+RecordedDrive record_drive(const RecordConfig& config, const std::shared_ptr<const Scene>& scene, const RecordPlan& plan,
                            const fs::path& folder, const std::string& source,
                            const std::function<void(double, const RecordSummary&)>& progress) {
-  expect_replaceable(folder);
+  expect_replaceable(folder, plan.truth_beside);
   SimulatedStream stream(config.scenario, scene, config.simulation);
   const StreamInfo& info = stream.info();
   calibration_of(info);  // throws before anything is written
@@ -85,27 +105,33 @@ RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<con
   }
 
   StagedFolder staged(folder);
-  RecordConfig resolved = config;
-  write_file(staged.path() / "config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, source));
-  const auto writer = make_recording_writer(format, staged.path(), info, "waretwin " + std::string(kVersion) + ", " + source, config.bag);
-  const bool with_poses = format == "scenenn" || format == "7scenes";
-  GrowingFile truth(staged.path() / "trajectory_truth.tum");
-  GrowingFile boxes(staged.path() / "truth_boxes.json");
+  const auto writer =
+      make_recording_writer(plan.format, staged.path(), info, "waretwin " + std::string(kVersion) + ", " + source, config.bag);
+  std::optional<BoxesFile> boxes;
+  if (plan.truth_beside || plan.true_boxes) boxes.emplace(staged.path() / (plan.truth_beside ? "truth_boxes.json" : "boxes.json"));
   TruthDetector detector(stream, config.truth_detector);
-  RecordSummary summary;
-  std::optional<Stamp> first, last;
+  FrameSchedule schedule(plan.rate_hz);
+  RecordedDrive drive;
+  RecordSummary& summary = drive.summary;
+  std::optional<Stamp> first;
+  int frames_seen = 0;
   while (auto event = stream.next()) {
     const Stamp stamp = stamp_of(*event);
     if (!first) first = stamp;
-    if (last != stamp) truth.append(tum_text({{stamp, stream.true_X_WB(stamp)}}));
-    last = stamp;
+    if (drive.true_trajectory.empty() || drive.true_trajectory.back().stamp != stamp) {
+      drive.true_trajectory.push_back({stamp, stream.true_X_WB(stamp)});
+    }
     if (auto* frame = std::get_if<RgbdFrame>(&*event)) {
-      load_pictures(*frame);
-      if (with_poses) frame->recorded_X_WC = stream.last_frame_truth().X_WC;
-      writer->add(*frame);
-      boxes.append((summary.frames == 0 ? "{\"frames\":[\n" : ",\n") + boxes_entry(stamp, detector.detect(*frame)));
-      if (coverage) coverage->add_frame(frame->sensor, stream.last_frame_truth().X_WC);
-      ++summary.frames;
+      ++frames_seen;
+      if (schedule.due(frame->sensor, stamp)) {
+        load_pictures(*frame);
+        const Pose& X_WC = stream.last_frame_truth().X_WC;
+        if (plan.true_poses) frame->recorded_X_WC = X_WC;
+        writer->add(*frame);
+        if (boxes) boxes->add(stamp, detector.detect(*frame));
+        if (coverage) coverage->add_frame(frame->sensor, X_WC);
+        ++summary.frames;
+      }
     } else if (const auto* scan = std::get_if<LaserScan>(&*event)) {
       writer->add(*scan);
       ++summary.scans;
@@ -113,22 +139,26 @@ RecordSummary record_drive(const RecordConfig& config, const std::shared_ptr<con
       writer->add(std::get<OdometryReading>(*event));
       ++summary.readings;
     }
-    summary.duration_s = to_seconds(*last - *first);
+    summary.duration_s = to_seconds(stamp - *first);
     if (!progress) continue;
     double done = info.duration_s && *info.duration_s > 0.0 ? summary.duration_s / *info.duration_s : 0.0;
-    if (info.frame_count && *info.frame_count > 0) done = std::max(done, static_cast<double>(summary.frames) / *info.frame_count);
+    if (info.frame_count && *info.frame_count > 0) done = std::max(done, static_cast<double>(frames_seen) / *info.frame_count);
     progress(std::min(done, 1.0), summary);
   }
   writer->finish();
-  truth.close();
-  boxes.append(summary.frames == 0 ? "{\"frames\":[]}\n" : "\n]}\n");
-  boxes.close();
-  const std::vector<ListedObject> objects = true_list(*scene, coverage.get());
-  write_file(staged.path() / "truth.json", truth_json(objects));
-  if (format == "scenenn") write_file(staged.path() / annotation_name(folder), scenenn_annotation(objects));
-  expect_replaceable(folder);
+  if (boxes) boxes->close();
+  drive.truth = true_list(*scene, coverage.get());
+  drive.motion = stream.motion();
+  if (plan.truth_beside) {
+    RecordConfig resolved = config;
+    write_file(staged.path() / "config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, source));
+    write_file(staged.path() / "trajectory_truth.tum", tum_text(drive.true_trajectory));
+    write_file(staged.path() / "truth.json", truth_json(drive.truth));
+    if (plan.format == "scenenn") write_file(staged.path() / annotation_name(folder), scenenn_annotation(drive.truth));
+  }
+  expect_replaceable(folder, plan.truth_beside);
   staged.commit();
-  return summary;
+  return drive;
 }
 
 }  // namespace waretwin

@@ -1,6 +1,7 @@
 #include "harness/run/run_choice.h"
 
 #include "core/error.h"
+#include "mapper/detect/boxes_file.h"
 #include "mapper/detect/shipped_models.h"
 
 namespace waretwin {
@@ -12,7 +13,7 @@ MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::
   const std::filesystem::path path = *detector;
   if (*detector == "yolo" || *detector == "none") {
     config.detector = *detector;
-  } else if (path.extension() == ".json") {
+  } else if (is_boxes(path)) {
     config.detector = "boxes";
     config.boxes = *detector;
   } else if (std::filesystem::exists(path) || is_shipped_model(path)) {
@@ -20,7 +21,8 @@ MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::
     config.model = *detector;
   } else {
     throw Error("--detector " + *detector +
-                ": no such file; expected yolo, truth, none, a JSON file with boxes, or a model (folder, file or shipped name)");
+                ": no such file; expected yolo, truth, none, boxes (a JSON file, or a folder of text files), or a model (folder, file or "
+                "shipped name)");
   }
   return config;
 }

@@ -36,6 +36,8 @@ void RunConfig::visit(Fields& f) {
   f.group("score", score, "how map and truth are compared");
   f.group("extras", extras, "what is measured beside the map");
   f.group("output", output, "files that are written where they can be");
+  f.group("external_mapper", external_mapper, "another mapper in place of ours (run --mapper)");
+  f.group("bag", bag, "how a ROS bag is written (record, run --mapper)");
   f("resume", resume, "the map.waretwin to go on from; empty: a new map");
 }
 

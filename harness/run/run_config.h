@@ -7,12 +7,14 @@
 
 #include "core/config.h"
 #include "harness/run/detection_log.h"
+#include "harness/run/external_mapper.h"
 #include "harness/score/object_score.h"
 #include "harness/truth/truth_detector.h"
 #include "harness/truth/truth_frames.h"
 #include "mapper/mapper_config.h"
 #include "mapper/output/output_config.h"
 #include "scenes/scenario.h"
+#include "sensors/recordings/ros_bag_config.h"
 #include "sim/simulated_stream.h"
 
 namespace waretwin {
@@ -47,6 +49,8 @@ struct RunConfig {
   ScoringRules score;
   RunExtras extras;
   OutputConfig output;
+  RosBagFormat bag;
+  ExternalMapper external_mapper;
   std::string resume;  // the map.waretwin to go on from; empty: a new map
 
   void visit(Fields& f);

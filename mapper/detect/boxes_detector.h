@@ -2,27 +2,22 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <vector>
 
-#include "core/stamp.h"
-#include "mapper/detect/detector.h"
+#include "mapper/detect/boxes_file.h"
 
 namespace waretwin {
 
-// Boxes from a JSON file:
-//   {"frames": [{"stamp": NANOSECONDS, "detections": [{"class": "conveyor", "box": [x, y, width, height], "score": 0.9}]}]}
-// Boxes in pixels of the colour image as in Detection; "score" may be left out (1). A frame takes the entry nearest to its stamp within
-// 1 ms (recordings round stamps); frames that the file does not name have no detections.
+// A frame takes the boxes whose stamp is nearest to its own, within 1 ms (files round stamps); frames that are not named have none.
 class BoxesDetector : public Detector {
  public:
-  // Throws Error naming file, frame and key where the file is no such JSON.
-  explicit BoxesDetector(const std::filesystem::path& file);
+  // Throws Error as read_boxes does.
+  explicit BoxesDetector(const std::filesystem::path& path, const DetectConfig& config = {});
   // Boxes are cut off at the picture's edges; those outside are dropped.
   std::vector<Detection> detect(const RgbdFrame& frame) override;
 
  private:
-  std::map<Stamp, std::vector<Detection>> frames_;
+  FrameBoxes frames_;
 };
 
 class NoDetector : public Detector {

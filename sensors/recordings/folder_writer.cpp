@@ -50,7 +50,7 @@ class Layout {
 
 class TumLayout final : public Layout {
  public:
-  explicit TumLayout(const fs::path& folder) : colour_(list(folder, "rgb")), depth_(list(folder, "depth")) {}
+  explicit TumLayout(const fs::path& folder) : folder_(folder), colour_(list(folder, "rgb")), depth_(list(folder, "depth")) {}
   Names names(int index) const override {
     const std::string file = numbered("/%06d.png", index);
     return {"rgb" + file, "depth" + file};
@@ -58,10 +58,21 @@ class TumLayout final : public Layout {
   void add(const RgbdFrame& frame, int, const Names& names) override {
     colour_.append(stamp_text(frame.stamp) + " " + names.colour + "\n");
     depth_.append(stamp_text(frame.stamp) + " " + names.depth + "\n");
+    if (!frame.recorded_X_WC) return;
+    if (!poses_) {
+      poses_.emplace(folder_ / "groundtruth.txt");
+      poses_->append("# seconds x y z qx qy qz qw\n");
+    }
+    const Eigen::Vector3d& p = frame.recorded_X_WC->translation();
+    const Eigen::Quaterniond q(frame.recorded_X_WC->linear());
+    char text[240];
+    std::snprintf(text, sizeof text, " %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    poses_->append(stamp_text(frame.stamp) + text);
   }
   void finish() override {
     colour_.close();
     depth_.close();
+    if (poses_) poses_->close();
   }
 
  private:
@@ -71,7 +82,9 @@ class TumLayout final : public Layout {
     file.append("# seconds file\n");
     return file;
   }
+  fs::path folder_;
   GrowingFile colour_, depth_;
+  std::optional<GrowingFile> poses_;
 };
 
 // Frames with numbers and, where they are known, poses.

@@ -30,9 +30,22 @@ std::unique_ptr<RecordingWriter> make_recording_writer(const std::string& format
 }
 
 bool is_recording_part(const std::string& name) {
-  static const std::set<std::string> names = {"rgb",       "depth",        "depth_native",   "rgb.txt",        "depth.txt",
-                                              "image",     "stamps.txt",   "timestamp.txt",  "trajectory.log", "depth_native.txt",
-                                              "laser.txt", "odometry.txt", "recording.yaml", "recording.bag",  "camera-intrinsics.txt"};
+  static const std::set<std::string> names = {"rgb",
+                                              "depth",
+                                              "depth_native",
+                                              "rgb.txt",
+                                              "depth.txt",
+                                              "image",
+                                              "stamps.txt",
+                                              "timestamp.txt",
+                                              "trajectory.log",
+                                              "depth_native.txt",
+                                              "laser.txt",
+                                              "odometry.txt",
+                                              "recording.yaml",
+                                              "recording.bag",
+                                              "camera-intrinsics.txt",
+                                              "groundtruth.txt"};
   if (names.contains(name)) return true;
   return name.starts_with("frame-") && (name.ends_with(".color.png") || name.ends_with(".depth.png") || name.ends_with(".pose.txt"));
 }

@@ -25,13 +25,13 @@ class RecordingWriter {
 
 // The layouts that can be written (recording.h describes them), each with recording.yaml beside it:
 //   tum      rgb.txt and rgb/, depth.txt and depth/, depth_native.txt and depth_native/ where the camera has a view of its own, laser.txt,
-//            odometry.txt. No groundtruth.txt: a mapper that reads the folder learns no true pose.
+//            odometry.txt
 //   7scenes  frame-NNNNNN.color.png, .depth.png and .pose.txt, camera-intrinsics.txt, stamps.txt; laser, odometry and native depth as above
 //   scenenn  image/, depth/, timestamp.txt, trajectory.log, stamps.txt; the rest as above
 //   rosbag   recording.bag: /camera/rgb/{image_raw,camera_info}, /camera/depth_registered/{image_raw,camera_info},
 //            /camera/depth/{image_raw,camera_info} where the camera has a view of its own, /scan, /odom, /tf (odom to base_link),
 //            /tf_static
-// Depth is in millimetres. 7scenes and scenenn hold a pose for each frame: RgbdFrame::recorded_X_WC, where it is set.
+// Depth is in millimetres. Poses are written where frames have them (RgbdFrame::recorded_X_WC), in tum as groundtruth.txt; a bag has none.
 const std::vector<std::string>& recording_formats();
 
 // Into an empty folder; `source` is the comment at the top of recording.yaml. Throws Error as calibration_of does, for an unknown format,

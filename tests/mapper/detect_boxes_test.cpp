@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "mapper/detect/boxes_detector.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/test_data.h"
 
 namespace waretwin {
@@ -34,6 +35,72 @@ TEST(BoxesDetector, GivesEachFrameItsOwn) {
   EXPECT_TRUE(detector.detect(frame_at(3'001'100'000)).empty());
   EXPECT_TRUE(detector.detect(frame_at(0)).empty());
   EXPECT_TRUE(NoDetector().detect(frame_at(0)).empty());
+}
+
+// The files of the paper's authors.
+class BoxFolder : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) { write_file(folder_.path() / name, text); }
+  std::filesystem::path path() const { return folder_.path(); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(BoxFolder, GivesEachFrameItsFile) {
+  write("classes.txt", "station\nconveyor\n");
+  write("1654000000.100000.txt", "1 150 40 100 20 0.75\n# a comment\nbox 10.5 20 30 40\n");
+  write("1654000000.200000.txt", "");
+  EXPECT_TRUE(is_boxes(path()));
+  BoxesDetector detector(path());
+  const std::vector<Detection> boxes = detector.detect(frame_at(1654000000'100000200));
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(boxes[0].class_name, "conveyor");
+  EXPECT_EQ(boxes[0].box, cv::Rect2f(150, 40, 50, 20)) << "cut off at the picture's edge";
+  EXPECT_FLOAT_EQ(boxes[0].score, 0.75f);
+  EXPECT_EQ(boxes[1].class_name, "box");
+  EXPECT_EQ(boxes[1].box, cv::Rect2f(10.5f, 20, 30, 40));
+  EXPECT_EQ(boxes[1].score, 1.0f);
+  EXPECT_TRUE(detector.detect(frame_at(1654000000'200000000)).empty());
+  EXPECT_TRUE(detector.detect(frame_at(1654000000'102000000)).empty());
+}
+
+TEST_F(BoxFolder, NamesAreTheConfigurations) {
+  write("mine.names", "a\nb\n");
+  write("other.list", "x\nconveyor\n");
+  write("7.txt", "0 1 2 30 4\n1 1 2 3 40\n");
+  DetectConfig config;
+  config.rename = {"a=belt"};
+  config.classes = {"belt"};
+  const FrameBoxes picked = read_boxes(path(), config);
+  ASSERT_EQ(picked.at(7'000'000'000).size(), 1u);
+  EXPECT_EQ(picked.at(7'000'000'000)[0].class_name, "belt");
+  config = {};
+  config.names = (path() / "other.list").string();
+  EXPECT_EQ(read_boxes(path(), config).at(7'000'000'000)[1].class_name, "conveyor");
+  write("boxes.json", R"({"frames": [{"stamp": 1, "detections": [{"class": "a", "box": [1, 2, 3, 4]}]}]})");
+  config = {};
+  config.rename = {"a=b"};
+  EXPECT_EQ(read_boxes(path() / "boxes.json", config).at(1)[0].class_name, "b");
+}
+
+TEST_F(BoxFolder, SaysWhereAFileIsWrong) {
+  EXPECT_ERROR(read_boxes(path()), "holds no boxes");
+  EXPECT_FALSE(is_boxes(path()));
+  const std::pair<const char*, const char*> rows[] = {
+      {"0 1 2 30 4", "class 0 has no name"},  {"c 1 2 3", "7.5.txt:1: has 4 words; expected 'class x y w h'"},
+      {"c 1 2 30 0", "30 x 0 pixels"},        {"c 0.5 0.5 0.2 0.2 1", "as shares of a picture are"},
+      {"c 1 2 30 4 1.5", "the score is 1.5"}, {"c 1 2 x 4", "'x' is not a number"},
+      {"c 1 2 nan 4", "'nan' is no pixel"}};
+  for (const auto& [row, expected] : rows) {
+    write("7.5.txt", std::string(row) + "\n");
+    EXPECT_ERROR(read_boxes(path()), expected);
+  }
+  write("classes.txt", "a\n");
+  write("7.5.txt", "1 1 2 30 4\n");
+  EXPECT_ERROR(read_boxes(path()), "class 1 has no name; expected 0 to 0");
+  write("7.5.txt", "");
+  write("notes.txt", "");
+  EXPECT_ERROR(read_boxes(path()), "notes.txt", "its name is no stamp");
+  EXPECT_ERROR(read_boxes(path() / "none"), "no such file or folder");
 }
 
 TEST(BoxesDetector, SaysWhereAFileIsWrong) {

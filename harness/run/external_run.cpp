@@ -1,0 +1,162 @@
+#include "harness/run/external_run.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "core/digest.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "harness/pictures/map_pictures.h"
+#include "harness/report/report_file.h"
+#include "harness/run/record.h"
+#include "harness/score/score_json.h"
+#include "harness/score/table6.h"
+#include "sensors/recordings/recording_writer.h"
+
+namespace waretwin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kRecording = "{recording}";
+constexpr const char* kOut = "{out}";
+constexpr const char* kBoxes = "{boxes}";
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+}
+
+void check(const RunConfig& config) {
+  const ExternalMapper& mapper = config.external_mapper;
+  for (const char* needed : {kRecording, kOut}) {
+    if (mapper.command.find(needed) == std::string::npos) {
+      throw Error("--mapper '" + mapper.command + "': does not say " + needed + "; expected a command with {recording} and {out}");
+    }
+  }
+  if (mapper.command.find(kBoxes) != std::string::npos && !config.truth_stages.detector) {
+    throw Error("--mapper '" + mapper.command + "': asks for {boxes}; expected --detector truth, which makes them");
+  }
+  if (config.truth_stages.poses && mapper.format == "rosbag") {
+    throw Error("--poses truth: a bag has no place for the camera's true poses; expected another --format");
+  }
+}
+
+std::vector<std::string> last_lines(const fs::path& file, std::size_t count) {
+  std::vector<std::string> lines;
+  std::istringstream in(read_file(file));
+  for (std::string line; std::getline(in, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    lines.push_back(line);
+    if (lines.size() > count) lines.erase(lines.begin());
+  }
+  return lines;
+}
+
+// The folder of what the command leaves, empty.
+void make_empty(const fs::path& folder) {
+  std::error_code error;
+  fs::remove_all(folder, error);
+  if (error) throw Error(folder, "cannot be emptied: " + error.message());
+  make_folder(folder);
+}
+
+std::string digest_of(const std::vector<ListedObject>& objects, const std::vector<StampedPose>& trajectory) {
+  Digest digest;
+  for (const ListedObject& object : objects) {
+    digest.add(object.id);
+    digest.add(object.class_name);
+    for (const Eigen::Vector3d& v : {object.cuboid.centre, object.cuboid.size}) digest.add_bytes(v.data(), 3 * sizeof(double));
+    digest.add(object.cuboid.yaw);
+  }
+  for (const StampedPose& point : trajectory) {
+    digest.add(point.stamp);
+    const Eigen::Matrix4d X = point.X_WB.matrix();
+    digest.add_bytes(X.data(), 16 * sizeof(double));
+  }
+  return digest.hex();
+}
+
+RunScore score_of(const RunConfig& config, const ShellResult& shell, const RecordedDrive& drive, const std::vector<ListedObject>& mapped,
+                  const std::optional<Trajectory>& trajectory) {
+  RunScore score;
+  score.scenario = config.scenario.name;
+  score.profile = "mapper";
+  score.seed = config.scenario.seed;
+  score.digest = digest_of(mapped, trajectory ? trajectory->poses : std::vector<StampedPose>());
+  score.stages = {{"detector", config.truth_stages.detector ? "truth" : "mapper"},
+                  {"poses", config.truth_stages.poses ? "truth" : "mapper"},
+                  {"association", "mapper"},
+                  {"depth", config.simulation.truth_depth ? "truth" : "sensor"}};
+  score.objects = compare_lists(mapped, drive.truth, config.score);
+  if (trajectory) {
+    const auto pairs = associate_poses(*trajectory, {drive.true_trajectory, true});
+    score.trajectory = score_trajectory(pairs, TrajectoryAlignment::kNone);
+    score.trajectory_aligned = score_trajectory(pairs, TrajectoryAlignment::kSe3);
+  }
+  score.motion = drive.motion;
+  score.frames_simulated = score.frames_mapped = drive.summary.frames;
+  score.realtime_factor = shell.wall_s > 0.0 ? drive.summary.duration_s / shell.wall_s : 0.0;
+  score.peak_rss_mb = shell.peak_rss_mb;
+  return score;
+}
+
+}  // namespace
+
+ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<const Scene>& scene, const std::function<RunFolder&()>& ready,
+                               const std::function<void(double, const std::string&)>& progress) {
+  const ExternalMapper& mapper = config.external_mapper;
+  check(config);
+  RunFolder& folder = ready();
+  for (const char* earlier :
+       {"cuboids.json", "trajectory.tum", "trajectory_covariance.csv", "timing.csv", "frames.jsonl", "map.glb", "map.ply",
+        "detections.jsonl", "truth_frames.jsonl", "budget.md", "mesh.png", "surface_error.ply", "upright.json"}) {
+    folder.remove(earlier);
+  }
+  const fs::path base = fs::absolute(folder.path()).lexically_normal() / "mapper", recording = base / "recording", out = base / "out";
+  make_empty(out);
+  RecordPlan plan{mapper.format, false, config.truth_stages.poses, config.truth_stages.detector, config.mapper.rate_hz};
+  const RecordConfig to_record{config.scenario, config.simulation, config.truth_detector, config.bag};
+  ExternalRunResult result;
+  RecordedDrive drive =
+      record_drive(to_record, scene, plan, recording, "scenario " + config.scenario.name,
+                   [&](double done, const RecordSummary& so_far) { progress(done, std::to_string(so_far.frames) + " frames recorded"); });
+  result.truth = drive.truth;
+  folder.write("truth.json", truth_json(drive.truth));
+  folder.write("trajectory_truth.tum", tum_text(drive.true_trajectory));
+
+  std::string command = mapper.command;
+  replace_all(command, kRecording, shell_word(recording.string()));
+  replace_all(command, kOut, shell_word(out.string()));
+  replace_all(command, kBoxes, shell_word((recording / "boxes.json").string()));
+  result.shell = run_shell(command, base / "stdout.log", base / "stderr.log", mapper.timeout_s, [&](double seconds) {
+    progress(1.0, "the mapper runs for " + std::to_string(static_cast<int>(seconds)) + " s");
+  });
+  result.last_words = last_lines(base / "stderr.log", 5);
+  if (result.shell.timed_out || result.shell.exit_code != 0) return result;
+
+  const fs::path cuboids = out / "cuboids.json", poses = out / "trajectory.tum";
+  if (!fs::exists(cuboids)) throw Error(cuboids, "is missing though the mapper ended well; expected a list of objects as cuboids.json");
+  const std::vector<ListedObject> mapped = read_object_list(cuboids);
+  std::optional<Trajectory> trajectory;
+  if (fs::exists(poses)) trajectory = read_trajectory(poses);
+  result.score = score_of(config, result.shell, drive, mapped, trajectory);
+  folder.write("cuboids.json", read_file(cuboids));
+  MapScene picture;
+  picture.mapped = mapped;
+  picture.truth = drive.truth;
+  picture.true_trajectory = drive.true_trajectory;
+  if (trajectory) {
+    picture.trajectory = trajectory->poses;
+    folder.write("trajectory.tum", read_file(poses));
+  }
+  folder.write_png("topdown.png", draw_from_above(picture, 0.0));
+  folder.write("table6.md", table6(result.score->objects, config.scenario.name + ", mapper " + mapper.command));
+  const std::string json = score_json(*result.score);
+  write_report(folder.path(), ReportKind::kRun, json);
+  if (!mapper.keep_recording) fs::remove_all(recording);
+  folder.write("score.json", json);
+  return result;
+}
+
+}  // namespace waretwin
