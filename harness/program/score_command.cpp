@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/program/common_options.h"
+#include "harness/score/scenenn_report.h"
+#include "harness/score/scenenn_sequences.h"
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
 #include "harness/score/trajectory_comparison.h"
@@ -84,6 +86,16 @@ void score_object_lists(const ScoreOptions& options, const ScoringRules& rules) 
   write_file(fs::path(options.out) / "score.json", score_json(compared));
 }
 
+void score_scenenn(const ScoreOptions& options, const ScoringRules& rules) {
+  const SceneNnScore result = score_sequences(read_sequences(options.map, options.truth), rules);
+  const std::string tables = scenenn_tables(result, options.map);
+  std::cout << tables;
+  if (options.out.empty()) return;
+  make_folder(options.out);
+  write_file(fs::path(options.out) / "scenenn.md", tables);
+  write_file(fs::path(options.out) / "scenenn.json", scenenn_json(result));
+}
+
 void score_trajectories(const ScoreOptions& options, const TrajectoryRules& rules) {
   const std::string json = score_json(compare_trajectories(read_trajectory(options.map), read_trajectory(options.truth), rules));
   std::cout << json;
@@ -95,6 +107,9 @@ void score_trajectories(const ScoreOptions& options, const TrajectoryRules& rule
 int score(const ScoreOptions& options) {
   options.common.apply();
   const ScoreConfig config = configured(options);
+  for (const std::string& path : {options.map, options.truth}) {
+    if (!fs::exists(path)) throw Error(path, "does not exist; expected an object list, a folder with one, or a trajectory");
+  }
   if (is_object_list(options.map) != is_object_list(options.truth)) {
     throw Error(options.truth,
                 "cannot be compared with " + options.map + ": expected two object lists (.json or a run's folder) or two trajectories");
@@ -103,6 +118,8 @@ int score(const ScoreOptions& options) {
   refuse_options_of_the_other_kind(options, objects);
   if (!objects) {
     score_trajectories(options, config.trajectory);
+  } else if (options.protocol == "scenenn") {
+    score_scenenn(options, config.score);
   } else {
     score_object_lists(options, config.score);
   }
@@ -115,23 +132,29 @@ Command add_score_command(CLI::App& program) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App* command =
       program.add_subcommand("score", "cuboids of any mapper against any truth, or a trajectory against a true one (ATE, RPE)");
-  command->add_option("MAP", options->map, "cuboids.json or a run's folder; or a trajectory (TUM or KITTI text)")->required();
+  command
+      ->add_option("MAP", options->map,
+                   "cuboids.json or a run's folder (scenenn: or a folder of runs); or a trajectory (TUM or KITTI text)")
+      ->required();
   command->add_option("--truth", options->truth, "truth.json or a run's folder; or the true trajectory")->required()->type_name("TRUTH");
-  command->add_option("--out", options->out, "folder for score.json and table6.md")->type_name("DIR");
-  const auto add = [&](KeyOption& option, const char* help, const char* type, const CLI::Validator& check) {
-    command->add_option(option.option, option.value, help)->type_name(type)->check(check)->group("Trajectories");
+  command->add_option("--out", options->out, "folder for score.json and table6.md; scenenn: scenenn.json, scenenn.md")->type_name("DIR");
+  command
+      ->add_option("--protocol", options->protocol,
+                   "objects: the paper's Table 6 (default), or its Tables 1 to 5 over one or several sequences")
+      ->check(CLI::IsMember({"table6", "scenenn"}));
+  const auto add = [&](KeyOption& option, const char* help, const CLI::Validator& check) {
+    return command->add_option(option.option, option.value, help)->check(check)->group("Trajectories");
   };
-  add(options->align, "before the ATE (default: se3)", "se3|none", CLI::IsMember({"se3", "none"}));
-  add(options->rpe_delta, "how far apart the poses of the RPE are (default: 1)", "X", number_from_to(1e-9, 1e9));
-  add(options->rpe_unit, "unit of --rpe-delta (default: frames)", "frames|metres|degrees|seconds",
-      CLI::IsMember({"frames", "metres", "degrees", "seconds"}));
-  add(options->rpe_pairs, "pairs end to end, or one from every pose on (default: consecutive)", "consecutive|all",
-      CLI::IsMember({"consecutive", "all"}));
-  add(options->max_time_difference, "stamps this near belong together (default: 0.01)", "S", number_from_to(0, 3600));
-  add(options->time_offset, "added to the stamps of the estimate (default: 0)", "S", number_from_to(-1e9, 1e9));
+  add(options->align, "before the ATE (default: se3)", CLI::IsMember({"se3", "none"}));
+  add(options->rpe_delta, "how far apart the poses of the RPE are (default: 1)", number_from_to(1e-9, 1e9))->type_name("X");
+  add(options->rpe_unit, "unit of --rpe-delta (default: frames)", CLI::IsMember({"frames", "metres", "degrees", "seconds"}));
+  add(options->rpe_pairs, "pairs end to end, or one from every pose on (default: consecutive)", CLI::IsMember({"consecutive", "all"}));
+  add(options->max_time_difference, "stamps this near belong together (default: 0.01)", number_from_to(0, 3600))->type_name("S");
+  add(options->time_offset, "added to the stamps of the estimate (default: 0)", number_from_to(-1e9, 1e9))->type_name("S");
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin score cuboids.json --truth truth.json --out out/score\n"
+      "  waretwin score out/scenenn --truth scenenn --protocol scenenn --out out/tables\n"
       "  waretwin score trajectory.tum --truth trajectory_truth.tum --rpe-delta 1 --rpe-unit metres --rpe-pairs all\n\n"
       "Keys for --set: score.max_centre_distance_m, score.match_iou, score.min_visible_fraction, score.square_ratio; of trajectories "
       "those\n"
