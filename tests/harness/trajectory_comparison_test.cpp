@@ -117,6 +117,8 @@ TEST(TrajectoryComparison, NeedsStampsForSeconds) {
   TrajectoryRules rules;
   rules.rpe_unit = "seconds";
   EXPECT_THROW(compare_trajectories(kitti, kitti, rules), Error);
+  rules.rpe_unit = "frames";
+  EXPECT_THROW(compare_trajectories(kitti, trajectory(straight(5)), rules), Error) << "rows cannot be matched with stamps";
   rules.rpe_unit = "metres";
   EXPECT_NEAR(compare_trajectories(kitti, kitti, rules).rpe_trans_m->max, 0.0, 1e-12);
 }
