@@ -108,7 +108,8 @@ int score(const ScoreOptions& options) {
   options.common.apply();
   const ScoreConfig config = configured(options);
   for (const std::string& path : {options.map, options.truth}) {
-    if (!fs::exists(path)) throw Error(path, "does not exist; expected an object list, a folder with one, or a trajectory");
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) throw Error(path, "does not exist; expected an object list, a folder with one, or a trajectory");
   }
   if (is_object_list(options.map) != is_object_list(options.truth)) {
     throw Error(options.truth,

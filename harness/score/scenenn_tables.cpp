@@ -170,11 +170,14 @@ std::string table3(const SceneNnScore& score) {
   };
   add(kOursPaper, &SequenceScore::map_paper, score.map_paper);
   add(kOursArea, &SequenceScore::ap50, score.ap50);
+  const std::string shared_text = count == 0
+                                      ? "no sequence here is one of the paper's."
+                                      : "Avg. of shared is over the " + std::to_string(count) + " that both the paper and this score have.";
   return "\n## Table 3: mAP of several systems (%)\n\n" + markdown_table(rows, 1) +
-         "\nAverage is over each row's own sequences (as printed " + "for the published ones); Avg. of shared is over the " +
-         std::to_string(count) + " that both the paper and this score have. The\n" +
-         "paper prints 225 for 255 here. Its averages of Pham et al. and Grinvald et al. do not follow from their rows, which give 42.0 " +
-         "and 52.4.\n";
+         "\nAverage is over each row's own sequences (as printed for the published ones); " + shared_text +
+         " The\npaper prints 225 for 255 here. Its averages of Pham et al. and Grinvald et al. do not follow from their rows, which give "
+         "42.0 and "
+         "52.4.\n";
 }
 
 std::string ratio_text(double theirs, double ours) { return number("%.2f", ours > 0.0 ? Value(theirs / ours) : Value()); }
