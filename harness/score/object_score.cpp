@@ -6,17 +6,12 @@
 #include <set>
 
 #include "core/pose.h"
+#include "core/statistics.h"
 #include "harness/score/assignment.h"
 
 namespace waretwin {
 
 namespace {
-
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
 
 std::optional<double> mean_or_none(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
@@ -109,7 +104,9 @@ ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std
     }
     const std::vector<int> partner = assign_largest(weights);
 
-    int class_truth = 0, class_matched = 0;
+    ClassScore score;
+    score.class_name = class_name;
+    std::vector<double> class_ious;
     std::vector<RankedObject> ranked(candidates.size());
     std::vector<bool> ignored(candidates.size(), false);
     for (std::size_t j = 0; j < candidates.size(); ++j) ranked[j].score = mapped[candidates[j]].score;
@@ -127,14 +124,16 @@ ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std
           translations.push_back(*row.e_trans_m);
           rotations.push_back(*row.e_rot_deg);
           ranked[j].hit = row.iou3d >= rules.match_iou;
-          class_matched += ranked[j].hit ? 1 : 0;
+          score.matched += ranked[j].hit ? 1 : 0;
+          ++score.assigned;
         } else {
           ignored[j] = true;
         }
       }
       if (row.counted) {
         ious.push_back(row.iou3d);
-        ++class_truth;
+        class_ious.push_back(row.iou3d);
+        ++score.truth;
       }
     }
 
@@ -144,12 +143,18 @@ ObjectListScore score_objects(const std::vector<ListedObject>& mapped, const std
       counted.push_back(ranked[j]);
       if (!ranked[j].hit) result.false_positives.push_back(mapped[candidates[j]].id);
     }
-    summary.truth += class_truth;
-    summary.mapped += static_cast<int>(counted.size());
-    summary.matched += class_matched;
-    if (class_truth == 0) continue;
-    class_ap.push_back(average_precision(counted, class_truth));
-    class_precision.push_back(ratio(class_matched, static_cast<int>(counted.size())).value_or(0.0));
+    score.mapped = static_cast<int>(counted.size());
+    if (score.truth > 0) {
+      score.mean_iou3d = mean(class_ious);
+      score.ap50 = average_precision(counted, score.truth);
+      score.ap_paper = ratio(score.matched, score.mapped).value_or(0.0);
+      class_ap.push_back(*score.ap50);
+      class_precision.push_back(*score.ap_paper);
+    }
+    summary.truth += score.truth;
+    summary.mapped += score.mapped;
+    summary.matched += score.matched;
+    result.classes.push_back(std::move(score));
   }
   std::sort(result.false_positives.begin(), result.false_positives.end());
   summary.recall = ratio(summary.matched, summary.truth);

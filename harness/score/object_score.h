@@ -42,9 +42,20 @@ struct ScoreSummary {
   std::optional<double> map_paper;  // the paper's mAP: TP / (TP + FP) a class, averaged; a class of which nothing was mapped gives 0
 };
 
+// The same of one class that the truth names.
+struct ClassScore {
+  std::string class_name;
+  int truth = 0, mapped = 0, matched = 0, assigned = 0;  // objects that count; assigned: true objects with a partner, however small the IoU
+  // Nothing where no true object counts, of the class's own counts as in the summary.
+  std::optional<double> mean_iou3d;  // over counted true objects, an unassigned one as 0
+  std::optional<double> ap50;        // area under the precision-recall curve
+  std::optional<double> ap_paper;    // TP / (TP + FP); 0 where nothing was mapped
+};
+
 struct ObjectListScore {
   std::vector<ObjectScore> objects;  // in the order of the truth
   std::vector<int> false_positives;  // ids of mapped objects that count and match nothing, ascending
+  std::vector<ClassScore> classes;   // by name
   ScoreSummary summary;
 };
 

@@ -169,15 +169,4 @@ std::string score_json(const ComparedLists& objects) {
   return text(json);
 }
 
-std::string score_json(const TrajectoryScore& plain, const TrajectoryScore& aligned) {
-  Json json;
-  json["schema"] = kScoreSchema;
-  json["version"] = kVersion;
-  json["trajectory"] = trajectory_json(aligned);
-  json["trajectory"]["alignment"] = "se3";
-  json["trajectory"]["ate_unaligned_rmse_m"] = plain.ate_rmse_m;
-  json["trajectory"]["ate_unaligned_max_m"] = plain.ate_max_m;
-  return text(json);
-}
-
 }  // namespace waretwin

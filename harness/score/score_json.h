@@ -15,7 +15,4 @@ std::string score_json(const RunScore& score);
 // What `waretwin score` writes about two lists of objects: schema, version, objects, summary, and the same after alignment.
 std::string score_json(const ComparedLists& objects);
 
-// What it writes about two trajectories.
-std::string score_json(const TrajectoryScore& plain, const TrajectoryScore& aligned);
-
 }  // namespace waretwin

@@ -26,7 +26,8 @@ double parse_number(const std::string& word, const std::filesystem::path& file, 
 // Seconds to nanoseconds digit by digit: a double holds seconds since 1970 only to about 200 ns.
 Stamp parse_stamp(const std::string& word, const std::filesystem::path& file, int line) {
   const double seconds = parse_number(word, file, line);
-  if (std::abs(seconds) > 9.0e9) throw Error(file, line, "stamp " + word.substr(0, 40) + " is beyond 9e9 s");
+  // Differences of stamps, and what is added to them, still fit 64 bits.
+  if (std::abs(seconds) > 4.0e9) throw Error(file, line, "stamp " + word.substr(0, 40) + " is beyond 4e9 s");
   if (word.find_first_of("eE") != std::string::npos) return from_seconds(seconds);
   const std::size_t point = word.find('.');
   const std::string whole = word.substr(0, point);

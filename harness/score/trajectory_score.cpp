@@ -20,28 +20,43 @@ const StampedPose& nearest(const std::vector<StampedPose>& poses, Stamp stamp) {
 
 }  // namespace
 
-std::vector<std::pair<Pose, Pose>> associate_poses(const Trajectory& estimate, const Trajectory& truth, Stamp max_difference) {
+MatchedPoses match_poses(const Trajectory& estimate, const Trajectory& truth, Stamp max_difference, Stamp time_offset) {
   if (estimate.has_stamps != truth.has_stamps) throw Error("one trajectory has stamps (TUM), the other has none (KITTI)");
-  std::vector<std::pair<Pose, Pose>> pairs;
+  MatchedPoses matched;
+  const auto add = [&](const StampedPose& estimated, const StampedPose& true_pose) {
+    matched.poses.emplace_back(estimated.X_WB, true_pose.X_WB);
+    matched.stamps.push_back(estimated.stamp + time_offset);
+  };
   if (!estimate.has_stamps) {
     if (estimate.poses.size() != truth.poses.size()) {
       throw Error("the trajectories have " + std::to_string(estimate.poses.size()) + " and " + std::to_string(truth.poses.size()) +
                   " rows; without stamps they must be equally long");
     }
-    for (std::size_t i = 0; i < truth.poses.size(); ++i) pairs.emplace_back(estimate.poses[i].X_WB, truth.poses[i].X_WB);
+    for (std::size_t i = 0; i < truth.poses.size(); ++i) add(estimate.poses[i], truth.poses[i]);
   } else if (estimate.poses.size() <= truth.poses.size()) {
     for (const StampedPose& point : estimate.poses) {
-      const StampedPose& partner = nearest(truth.poses, point.stamp);
-      if (std::abs(partner.stamp - point.stamp) <= max_difference) pairs.emplace_back(point.X_WB, partner.X_WB);
+      const StampedPose& partner = nearest(truth.poses, point.stamp + time_offset);
+      if (std::abs(partner.stamp - point.stamp - time_offset) <= max_difference) add(point, partner);
     }
   } else {
     for (const StampedPose& point : truth.poses) {
-      const StampedPose& partner = nearest(estimate.poses, point.stamp);
-      if (std::abs(partner.stamp - point.stamp) <= max_difference) pairs.emplace_back(partner.X_WB, point.X_WB);
+      const StampedPose& partner = nearest(estimate.poses, point.stamp - time_offset);
+      if (std::abs(partner.stamp + time_offset - point.stamp) <= max_difference) add(partner, point);
     }
   }
-  if (pairs.empty()) throw Error("no stamps of the two trajectories are within " + std::to_string(to_seconds(max_difference)) + " s");
-  return pairs;
+  if (matched.poses.empty())
+    throw Error("no stamps of the two trajectories are within " + std::to_string(to_seconds(max_difference)) + " s");
+  return matched;
+}
+
+std::vector<std::pair<Pose, Pose>> associate_poses(const Trajectory& estimate, const Trajectory& truth, Stamp max_difference) {
+  return match_poses(estimate, truth, max_difference, 0).poses;
+}
+
+RelativeError relative_error(const std::pair<Pose, Pose>& from, const std::pair<Pose, Pose>& to) {
+  const Pose estimated_step = from.first.inverse() * to.first;
+  const Pose true_step = from.second.inverse() * to.second;
+  return {(true_step.inverse() * estimated_step).translation(), rotation_between(true_step, estimated_step)};
 }
 
 Pose align_trajectory(const std::vector<std::pair<Pose, Pose>>& pairs) {
@@ -85,12 +100,9 @@ TrajectoryScore score_trajectory(const std::vector<std::pair<Pose, Pose>>& pairs
 
   double translation_squares = 0.0, rotation_squares = 0.0;
   for (std::size_t i = 0; i + 1 < pairs.size(); ++i) {
-    const Pose estimated_step = pairs[i].first.inverse() * pairs[i + 1].first;
-    const Pose true_step = pairs[i].second.inverse() * pairs[i + 1].second;
-    const Pose error = true_step.inverse() * estimated_step;
-    translation_squares += error.translation().squaredNorm();
-    const double angle = rotation_between(true_step, estimated_step);
-    rotation_squares += angle * angle;
+    const RelativeError error = relative_error(pairs[i], pairs[i + 1]);
+    translation_squares += error.translation.squaredNorm();
+    rotation_squares += error.angle * error.angle;
   }
   score.rpe_trans_m = std::sqrt(translation_squares / (count - 1.0));
   score.rpe_rot_deg = to_degrees(std::sqrt(rotation_squares / (count - 1.0)));
