@@ -86,7 +86,7 @@ void add_living_room(Kit& kit, int hall) {
   add_chest(kit, room, {-3.25, 0.47, 0, 0.0},
             {.width = 0.8, .depth = 0.32, .height = 0.88, .columns = 1, .rows = 3, .body = "oak", .front = "white_lacquer"});
   add_wall_picture(kit, room, {-3.25, kNorth - kHalf, 1.35, 180}, 0.72, 0.54, "painting_hills");
-  add_object(kit, room, "shopping_bag", "bag", {-4.08, 0.40, 0, 11.4}, [&](int at) { add_shopping_bag(kit, at, {}); });
+  add_object(kit, room, "shopping_bag", "bag", {-4.02, 0.36, 0, 11.4}, [&](int at) { add_shopping_bag(kit, at, {}); });
   add_wall_picture(kit, room, {-kX, -2.9, 1.3, -90}, 0.48, 0.64, "painting_shapes");
 }
 
@@ -98,9 +98,9 @@ void add_kitchen(Kit& kit, int hall) {
   add_wall_cupboards(kit, room, {kX - 0.175, -2.37, 1.45, -90}, 2.2);
   add_pot(kit, room, {4.29, -2.89, 0.9068, 20});
   add_cup(kit, room, {4.3, -2.25, 0.9, 100});
-  add_object(kit, room, "dining_table", "table", {2.2, -2.2, 0, 0.7}, [&](int at) { add_wooden_table(kit, at, {}, {}); });
-  add_fruit_bowl(kit, room, {2.15, -2.22, 0.74, 10});
-  const Placement chairs[] = {{1.87, -1.60, 0, 4.6}, {2.56, -1.50, 0, -13.4}, {1.84, -2.83, 0, 176.3}, {2.58, -2.98, 0, 193.7}};
+  add_object(kit, room, "dining_table", "table", {2.2, -2.28, 0, 0.7}, [&](int at) { add_wooden_table(kit, at, {}, {}); });
+  add_fruit_bowl(kit, room, {2.15, -2.3, 0.74, 10});
+  const Placement chairs[] = {{1.87, -1.72, 0, 4.6}, {2.56, -1.64, 0, -8.4}, {1.84, -2.91, 0, 176.3}, {2.58, -3.04, 0, 188.7}};
   for (int i = 0; i < 4; ++i) {
     add_object(kit, room, "chair_" + std::to_string(i + 1), "chair", chairs[i],
                [&](int at) { add_wooden_chair(kit, at, {}, {.cushion = i % 2 == 0 ? "fabric_rust" : ""}); });
@@ -119,7 +119,7 @@ void add_bedroom(Kit& kit, int hall) {
   add_vase(kit, room, {1.17, 1.65, 0.84});
   add_object(kit, room, "chair_5", "chair", {1.32, 3.02, 0, 28.6},
              [&](int at) { add_wooden_chair(kit, at, {}, {.wood = "pine", .cushion = "fabric_beige"}); });
-  add_object(kit, room, "backpack", "bag", {1.15, 2.3, 0, 84.2}, [&](int at) { add_backpack(kit, at, {}, "canvas_red"); });
+  add_object(kit, room, "backpack", "bag", {1.15, 2.4, 0, 84.2}, [&](int at) { add_backpack(kit, at, {}, "canvas_red"); });
   add_curtains(kit, room, {2.2, kY, 2.32, 180}, 1.4, 2.2);
   add_wall_picture(kit, room, {kX, 1.75, 1.4, 90}, 0.8, 0.6, "painting_hills");
 }
@@ -149,7 +149,7 @@ void add_study(Kit& kit, int hall) {
     int board;
     double along, length;
   };
-  for (const Row& row : {Row{1, -0.05, 1.02}, Row{2, 0.14, 0.84}, Row{3, -0.2, 0.62}}) {
+  for (const Row& row : {Row{1, -0.05, 1.02}, Row{2, 0.14, 0.84}, Row{3, -0.06, 0.62}}) {
     const std::string key = "shelf_" + std::to_string(row.board);
     add_object(kit, room, "books_" + key, "books", {shelf_at.x + 0.03, shelf_at.y + row.along, shelf.board_top(row.board), 90},
                [&](int at) { add_book_row(kit, at, {}, row.length, 0.28, key); });
@@ -164,6 +164,9 @@ void add_study(Kit& kit, int hall) {
 }  // namespace
 
 void build_flat(Kit& kit) {
+  // Rooms that people live in: skirtings and doors of wood, not of metal.
+  kit.define("skirting", [] { return make_finish("white_lacquer"); });
+  kit.define("door_paint", [] { return make_finish("pine"); });
   const int hall = kit.group("flat", -1);
   add_shell(kit, hall);
   add_living_room(kit, hall);

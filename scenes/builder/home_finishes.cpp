@@ -81,6 +81,11 @@ Finish striped(const std::string& key, const Scalar& a, const Scalar& b, const S
   return textured(t, 0.8, 0.8, 0, 0.95, 0.55);
 }
 
+// Even, without the dirt of painted metal.
+Finish lacquered(const std::string& key, const Scalar& bgr, double roughness, double reflectivity) {
+  return textured(mottled(128, 128, bgr, 2, 2, key), 0.8, 0.8, 0, roughness, reflectivity);
+}
+
 Finish leather(const std::string& key, const Scalar& bgr, double reflectivity) {
   cv::Mat t = mottled(256, 256, bgr, 7, 9, key);
   add_stains(t, -14, 0.6, 16, key + " grain");
@@ -164,17 +169,17 @@ const std::map<std::string, Recipe>& home_recipes() {
        }},
       {"white_lacquer",
        [] {
-         return painted("white lacquer", {226, 228, 228}, 0.45, 0.7, 4);
+         return lacquered("white lacquer", {226, 228, 228}, 0.45, 0.7);
        }},
       {"kitchen_front",
        [] {
-         return painted("kitchen front", {206, 212, 206}, 0.45, 0.65, 6);
+         return lacquered("kitchen front", {206, 212, 206}, 0.45, 0.65);
        }},
       {"worktop", worktop},
       // Metal, ceramic, glass
       {"enamel",
        [] {
-         return painted("enamel", {230, 232, 232}, 0.35, 0.72, 5);
+         return lacquered("enamel", {230, 232, 232}, 0.35, 0.72);
        }},
       {"ceramic",
        [] {

@@ -53,7 +53,7 @@ int add_bed(Kit& kit, int parent, const Placement& at, const Bed& b) {
     draft.add(frame, standing_box(b.width, kBoard, 0.38, 0.008).move(0, foot + kBoard / 2, 0));
     for (const double side : {-1.0, 1.0})
       draft.add(frame, standing_box(0.03, inside, kRailTop - 0.14).move(side * (b.width / 2 - 0.015), 0, 0.14));
-    draft.add(linen, standing_box(b.width - 0.07, inside - 0.01, kMattressTop - 0.22, 0.035).move(0, 0, 0.22));
+    draft.add(linen, standing_box(b.width - 0.07, inside - 0.05, kMattressTop - 0.22, 0.035).move(0, 0, 0.22));
     // The blanket hangs over both sides and ends below the pillows, with the sheet folded back over its edge.
     const double covered = 0.68 * inside, from = foot + kBoard + 0.005;
     draft.add(blanket, bevelled_box(b.width - 0.035, covered, 0.20, 0.045).move(0, from + covered / 2, kMattressTop - 0.06));
@@ -121,7 +121,7 @@ int add_sofa(Kit& kit, int parent, const Placement& at, const Sofa& s) {
     for (const double side : {-1.0, 1.0}) {
       if (side > 0 && s.seats == 1) continue;
       Shape p = pillow(0.42, 0.42, 0.15).move(0, 0, -0.075).rotate(Vector3d::UnitX(), 68).rotate(Vector3d::UnitZ(), side * -16);
-      draft.add(cushion, p.move(s.seats == 1 ? 0 : side * (inside / 2 - 0.24), s.depth / 2 - kBack - 0.22, kSeat + 0.20));
+      draft.add(cushion, p.move(s.seats == 1 ? 0 : side * (inside / 2 - 0.24), s.depth / 2 - kBack - 0.26, kSeat + 0.20));
     }
   });
 }

@@ -9,7 +9,7 @@
 namespace waretwin::builder {
 
 struct Refrigerator {
-  double width = 0.60, depth = 0.64, height = 1.60;
+  double width = 0.60, depth = 0.64, height = 1.42;
   std::string finish = "enamel";
 };
 int add_refrigerator(Kit& kit, int parent, const Placement& at, const Refrigerator& fridge);
