@@ -119,7 +119,7 @@ void add_bedroom(Kit& kit, int hall) {
   add_vase(kit, room, {1.17, 1.65, 0.84});
   add_object(kit, room, "chair_5", "chair", {1.32, 3.02, 0, 28.6},
              [&](int at) { add_wooden_chair(kit, at, {}, {.wood = "pine", .cushion = "fabric_beige"}); });
-  add_object(kit, room, "backpack", "bag", {1.15, 2.4, 0, 84.2}, [&](int at) { add_backpack(kit, at, {}, "canvas_red"); });
+  add_object(kit, room, "backpack", "bag", {1.15, 2.3, 0, 84.2}, [&](int at) { add_backpack(kit, at, {}, "canvas_red"); });
   add_curtains(kit, room, {2.2, kY, 2.32, 180}, 1.4, 2.2);
   add_wall_picture(kit, room, {kX, 1.75, 1.4, 90}, 0.8, 0.6, "painting_hills");
 }

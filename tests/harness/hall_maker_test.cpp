@@ -28,8 +28,8 @@ TEST(HallMaker, ShowsEveryConveyorAndTouchesNothing) {
     const test::TemporaryFolder folder;
     const fs::path place = folder.path() / "hall";
     const MadeHall made = make_hall(cell(seed), place);
-    EXPECT_GE(made.conveyors.size(), 3u);
-    EXPECT_LE(made.conveyors.size(), 6u);
+    EXPECT_GE(made.objects.size(), 3u);
+    EXPECT_LE(made.objects.size(), 6u);
     for (const char* name : {"scenario.yaml", "hall.glb", "plan.png"}) EXPECT_TRUE(fs::exists(place / name)) << name;
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "nothing is left beside it";
 
@@ -45,7 +45,7 @@ TEST(HallMaker, ShowsEveryConveyorAndTouchesNothing) {
     }
     motion.advance_to(motion.duration());
     EXPECT_TRUE(motion.report().contacts.empty());
-    for (const MadeConveyor& conveyor : made.conveyors) {
+    for (const MadeObject& conveyor : made.objects) {
       EXPECT_GE(conveyor.coverage, 0.8) << conveyor.object.name;
       EXPECT_GE(coverage.fraction(conveyor.object.id), 0.79) << conveyor.object.name;
       EXPECT_GE(conveyor.stops, 2) << conveyor.object.name;

@@ -24,7 +24,7 @@ namespace waretwin::generate {
 namespace {
 
 HallPlan planned(const GenerateConfig& config) {
-  const Generator generator(config, CameraConfig{});
+  const Generator generator(config);
   for (int attempt = 0; attempt < 30; ++attempt) {
     std::optional<HallPlan> plan = generator.draw(attempt);
     if (plan) return *std::move(plan);
@@ -61,28 +61,28 @@ TEST(GeneratedCells, KeepTheirPromisesOnPaper) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     const HallPlan plan = planned(cell(seed));
-    EXPECT_GE(plan.conveyors.size(), 3u);
-    EXPECT_LE(plan.conveyors.size(), 6u);
-    counts.insert(plan.conveyors.size());
-    std::vector<int> stops(plan.conveyors.size(), 0);
-    for (const Stop& stop : plan.stops) ++stops[static_cast<std::size_t>(stop.conveyor)];
-    for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-      const PlannedConveyor& c = plan.conveyors[i];
+    EXPECT_GE(plan.objects.size(), 3u);
+    EXPECT_LE(plan.objects.size(), 6u);
+    counts.insert(plan.objects.size());
+    std::vector<int> stops(plan.objects.size(), 0);
+    for (const Stop& stop : plan.stops) ++stops[static_cast<std::size_t>(stop.object)];
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+      const PlannedObject& c = plan.objects[i];
       kinds.insert(c.kind());
       EXPECT_GE(stops[i], 2) << c.name;
       EXPECT_GT(std::abs(c.at.yaw_deg - std::round(c.at.yaw_deg)), 0.1) << c.name << " stands on the grid of whole degrees";
-      for (std::size_t k = i + 1; k < plan.conveyors.size(); ++k) {
+      for (std::size_t k = i + 1; k < plan.objects.size(); ++k) {
         double between = 1e9;
         for (const Solid& a : c.solids()) {
-          for (const Solid& b : plan.conveyors[k].solids()) between = std::min(between, gap(a, b));
+          for (const Solid& b : plan.objects[k].solids()) between = std::min(between, gap(a, b));
         }
-        EXPECT_GT(between, 0.01) << c.name << ", " << plan.conveyors[k].name;
+        EXPECT_GT(between, 0.01) << c.name << ", " << plan.objects[k].name;
         close_pairs += between < 0.32 ? 1 : 0;
       }
     }
     const auto owner = [&](const Solid& solid) {
-      for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-        for (const Solid& s : plan.conveyors[i].solids()) {
+      for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+        for (const Solid& s : plan.objects[i].solids()) {
           if (s.centre == solid.centre && s.low == solid.low) return static_cast<int>(i);
         }
       }
@@ -109,8 +109,8 @@ TEST(GeneratedCells, AreWhatTheyWereOnPaperOnceBuilt) {
     EXPECT_TRUE(hall.scene.notes.empty()) << hall.scene.notes.front();
     EXPECT_EQ(hall.scenario.seed, seed);
     EXPECT_EQ(hall.scenario.robot.route.size(), plan.robot.route.size());
-    ASSERT_EQ(hall.scene.objects.size(), plan.conveyors.size());
-    for (const PlannedConveyor& c : plan.conveyors) {
+    ASSERT_EQ(hall.scene.objects.size(), plan.objects.size());
+    for (const PlannedObject& c : plan.objects) {
       SCOPED_TRACE(c.name);
       const auto found =
           std::find_if(hall.scene.objects.begin(), hall.scene.objects.end(), [&](const TrueObject& o) { return o.name == c.name; });
@@ -155,12 +155,12 @@ TEST(GeneratedCells, TakeTheSizeAndTheNumberThatOneAsksFor) {
   config.conveyors = 2;
   config.clutter = 0;
   const HallPlan plan = planned(config);
-  EXPECT_EQ(plan.conveyors.size(), 2u);
+  EXPECT_EQ(plan.objects.size(), 2u);
   EXPECT_EQ(plan.length, 9.5);
   EXPECT_EQ(plan.width, 7.25);
   GenerateConfig small = config;
   small.width_m = 3.0;
-  EXPECT_ERROR(Generator(small, CameraConfig{}), "9.5x3", "4x4");
+  EXPECT_ERROR(Generator{small}, "9.5x3", "4x4");
 }
 
 TEST(GeneratedCells, ClutterIsWhatOneAsksFor) {
@@ -179,23 +179,23 @@ TEST(GeneratedWarehouses, HoldLinesThatVehiclesDriveAround) {
     SCOPED_TRACE(seed);
     config.seed = seed;
     const HallPlan plan = planned(config);
-    EXPECT_GE(plan.conveyors.size(), 6u);
-    EXPECT_LE(plan.conveyors.size(), 10u);
+    EXPECT_GE(plan.objects.size(), 6u);
+    EXPECT_LE(plan.objects.size(), 10u);
     EXPECT_GT(plan.length * plan.width, 150.0);
     EXPECT_GT(plan.items.size(), 10u);
     const LoadedHall hall = load(plan, seed);
-    ASSERT_EQ(hall.scene.objects.size(), plan.conveyors.size());
+    ASSERT_EQ(hall.scene.objects.size(), plan.objects.size());
     EXPECT_LT(hall.scene.triangle_count(), 1'500'000u);
     const std::set<std::string> met = test::on_the_route(hall.scene, hall.scenario.robot, 0.05);
     EXPECT_TRUE(met.empty()) << test::joined(met);
-    for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-      kinds.insert(plan.conveyors[i].kind());
-      for (std::size_t k = i + 1; k < plan.conveyors.size(); ++k) {
-        const auto* a = std::get_if<builder::FloorConveyor>(&plan.conveyors[i].part);
-        const auto* b = std::get_if<builder::FloorConveyor>(&plan.conveyors[k].part);
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+      kinds.insert(plan.objects[i].kind());
+      for (std::size_t k = i + 1; k < plan.objects.size(); ++k) {
+        const auto* a = std::get_if<builder::FloorConveyor>(&plan.objects[i].part);
+        const auto* b = std::get_if<builder::FloorConveyor>(&plan.objects[k].part);
         if (!a || !b) continue;
-        const double between = gap(plan.conveyors[i].solids()[0], plan.conveyors[k].solids()[0]);
-        EXPECT_GT(between, 0.005) << plan.conveyors[i].name << ", " << plan.conveyors[k].name;
+        const double between = gap(plan.objects[i].solids()[0], plan.objects[k].solids()[0]);
+        EXPECT_GT(between, 0.005) << plan.objects[i].name << ", " << plan.objects[k].name;
         bolted += between < 0.04 ? 1 : 0;
       }
     }
@@ -233,16 +233,16 @@ TEST(GeneratedFlats, AreBareAndSmall) {
   GenerateConfig config;
   config.style = "flat";
   const HallPlan plan = planned(config);
-  EXPECT_GE(plan.conveyors.size(), 2u);
-  EXPECT_LE(plan.conveyors.size(), 3u);
+  EXPECT_GE(plan.objects.size(), 2u);
+  EXPECT_LE(plan.objects.size(), 3u);
   EXPECT_LT(build_glb(plan).size(), 600'000u);
-  for (const PlannedConveyor& c : plan.conveyors) EXPECT_TRUE(c.kind().starts_with("table-top")) << c.kind();
+  for (const PlannedObject& c : plan.objects) EXPECT_TRUE(c.kind().starts_with("table-top")) << c.kind();
   for (const PlannedWall& wall : plan.walls) EXPECT_TRUE(wall.openings.empty());
 }
 
 // Footprints against points of a fine grid.
-TEST(PlannedConveyors, SurfaceOfACurveLiesOnIt) {
-  PlannedConveyor conveyor;
+TEST(PlannedObjects, SurfaceOfACurveLiesOnIt) {
+  PlannedObject conveyor;
   builder::CurveConveyor curve;
   curve.belt = false;
   conveyor.part = curve;
