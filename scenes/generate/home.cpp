@@ -195,7 +195,7 @@ std::optional<HallPlan> draw_home(const GenerateConfig& config, int attempt) {
     for (int k = 0; k < kDraws && !done; ++k) done = stand_group(plan, draw(things, finishes), things);
     if (!done) return std::nullopt;
   }
-  const double clutter = config.clutter >= 0 ? config.clutter : things.between(0.4, 1.0);
+  const double clutter = config.clutter >= 0 ? config.clutter : things.between(0.55, 1.0);
   for (const DrawGroup& draw : kind.may) {
     if (things.chance(clutter)) stand_group(plan, draw(things, finishes), things);
   }

@@ -66,7 +66,7 @@ std::vector<Eigen::Vector2d> aims_at(const PlannedObject& object) {
   return aims;
 }
 
-// What may hide an object: everything near it but what it stands on; its own deck hides its legs.
+// What may hide an object: everything near it but what it stands on or in; its own deck hides its legs.
 std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
   const PlannedObject& object = plan.objects[index];
   const Eigen::Vector3d middle = object.middle();
@@ -77,7 +77,9 @@ std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
   }
   for (const PlacedItem& item : plan.items) {
     const Solid s = solid_of(item.item.extent, item.at);
-    if (s.high > lowest + 1e-4) list.push_back(s);
+    // An open case that an object stands in is empty where one looks at it.
+    const bool holds_it = distance(middle.head<2>(), s) <= 0 && s.low < middle.z() && middle.z() < s.high;
+    if (s.high > lowest + 1e-4 && !holds_it) list.push_back(s);
   }
   std::erase_if(list, [&](const Solid& s) { return distance(middle.head<2>(), s) > 3.0; });
   return list;
