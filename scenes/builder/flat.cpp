@@ -81,7 +81,7 @@ void add_living_room(Kit& kit, int hall) {
             {.width = 1.6, .depth = 0.42, .height = 0.46, .columns = 3, .rows = 1, .body = "walnut", .front = "white_lacquer"});
   add_object(kit, room, "television", "television", {-4.27, -2.1, 0.46, 90.7}, [&](int at) { add_television(kit, at, {}, 1.15); });
   add_floor_lamp(kit, room, {-3.85, -3.15});
-  add_plant(kit, room, {0.25, -2.9, 0, 30});
+  add_plant(kit, room, {0.1, -2.98, 0, 30});
   add_curtains(kit, room, {-2.4, -kY, 2.32, 0}, 1.8, 1.45);
   add_chest(kit, room, {-3.25, 0.47, 0, 0.0},
             {.width = 0.8, .depth = 0.32, .height = 0.88, .columns = 1, .rows = 3, .body = "oak", .front = "white_lacquer"});

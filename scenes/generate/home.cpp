@@ -152,15 +152,16 @@ void add_lamps(HallPlan& plan, Dice& dice) {
   }
 }
 
-// Nothing high stands before a window.
+// Nothing high stands before a window, and vehicles keep off its sill.
 void keep_windows_free(HallPlan& plan) {
+  constexpr double kDeep = 0.5, kSillDeep = 0.08, kSillHigh = 0.03, kSillBeyond = 0.05;  // of the sill as parts/room.cpp builds it
   for (const PlannedWall& wall : plan.walls) {
     for (const PlannedOpening& o : wall.openings) {
       if (o.kind != PlannedOpening::Kind::kWindow) continue;
-      constexpr double kDeep = 0.5;
-      const Vector3d half(o.hole.width / 2, kDeep / 2, 0);
-      plan.kept_free.push_back(
-          solid_of({-half, half + Vector3d(0, 0, o.hole.height)}, wall.at(o.hole.along + o.hole.width / 2, kDeep / 2, o.hole.above)));
+      const double along = o.hole.along + o.hole.width / 2, half = o.hole.width / 2;
+      plan.kept_free.push_back(solid_of({Vector3d(-half, 0, 0), Vector3d(half, kDeep, o.hole.height)}, wall.at(along, 0, o.hole.above)));
+      plan.solids.push_back(solid_of({Vector3d(-half - kSillBeyond, 0, -kSillHigh), Vector3d(half + kSillBeyond, kSillDeep, 0)},
+                                     wall.at(along, 0, o.hole.above)));
     }
   }
 }

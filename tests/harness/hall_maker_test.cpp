@@ -53,6 +53,21 @@ TEST(HallMaker, ShowsEveryConveyorAndTouchesNothing) {
   }
 }
 
+TEST(HallMaker, ShowsWhatStandsInAHome) {
+  const test::TemporaryFolder folder;
+  generate::GenerateConfig config = cell(4);
+  config.style = "home";
+  const MadeHall made = make_hall(config, folder.path() / "hall");
+  EXPECT_EQ(made.what, "objects");
+  const Scenario scenario = load_scenario(folder.path() / "hall" / "scenario.yaml");
+  const auto caster = std::make_shared<RayCaster>(std::make_shared<const Scene>(build_scene(scenario)));
+  HallMotion motion(scenario, *caster);
+  motion.advance_to(motion.duration());
+  EXPECT_TRUE(motion.report().contacts.empty());
+  ASSERT_FALSE(made.objects.empty());
+  for (const MadeObject& object : made.objects) EXPECT_GE(object.coverage, 0.8) << object.object.name;
+}
+
 TEST(HallMaker, GivesTheSameBytesAtAnyNumberOfThreads) {
   const test::TemporaryFolder folder;
   set_thread_count(1);
