@@ -142,10 +142,6 @@ const std::map<std::string, Recipe>& home_recipes() {
        [] {
          return carpet("carpet", {60, 52, 128}, {110, 78, 40}, 0.45);
        }},
-      {"carpet_grey",
-       [] {
-         return carpet("grey carpet", {150, 156, 160}, {96, 92, 88}, 0.5);
-       }},
       {"bath_mat",
        [] {
          return fabric("bath mat", {168, 150, 110});

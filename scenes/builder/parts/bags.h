@@ -7,8 +7,8 @@
 
 namespace waretwin::builder {
 
-int add_backpack(Kit& kit, int parent, const Placement& at, const std::string& canvas);  // 0.31 x 0.28 x 0.49 m
-int add_shopping_bag(Kit& kit, int parent, const Placement& at);                         // of paper, filled; 0.33 x 0.19 x 0.42 m
+int add_backpack(Kit& kit, int parent, const Placement& at, const std::string& canvas);  // 0.31 x 0.29 x 0.49 m
+int add_shopping_bag(Kit& kit, int parent, const Placement& at);                         // of paper, filled; 0.33 x 0.19 x 0.40 m
 int add_handbag(Kit& kit, int parent, const Placement& at, const std::string& leather);  // 0.36 x 0.15 x 0.40 m with its handle
 
 }  // namespace waretwin::builder

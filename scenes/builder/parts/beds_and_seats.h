@@ -23,7 +23,7 @@ int add_wooden_chair(Kit& kit, int parent, const Placement& at, const WoodenChai
 
 // A sofa for `seats` people; an armchair with one seat.
 struct Sofa {
-  double width = 2.0, depth = 0.90, height = 0.82;
+  double width = 2.0, depth = 0.90, height = 0.82;  // of the frame; back cushions reach a little higher
   int seats = 3;
   bool cushions = true;  // two that lie on it
   std::string fabric = "fabric_grey", cushion = "fabric_mustard";

@@ -25,7 +25,7 @@ int add_counter(Kit& kit, int parent, const Placement& at, const Counter& counte
 int add_wall_cupboards(Kit& kit, int parent, const Placement& at, double length, const std::string& front = "kitchen_front");
 int add_pot(Kit& kit, int parent, const Placement& at);
 
-int add_toilet(Kit& kit, int parent, const Placement& at);                                // with its cistern; 0.39 x 0.68 x 0.79 m
+int add_toilet(Kit& kit, int parent, const Placement& at);                                // with its cistern; 0.39 x 0.68 x 0.80 m
 int add_washbasin(Kit& kit, int parent, const Placement& at);                             // on a pedestal; 0.56 x 0.44 m
 int add_bathtub(Kit& kit, int parent, const Placement& at, double length, double width);  // length along x, the tap at +x
 
