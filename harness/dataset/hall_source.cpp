@@ -13,6 +13,7 @@
 #include "harness/units/units.h"
 #include "scenes/generate/generator.h"
 #include "scenes/generate/hall_files.h"
+#include "scenes/generate/home.h"
 
 namespace waretwin {
 
@@ -89,7 +90,7 @@ class GeneratedSource final : public HallSource {
     const auto words = RandomStream(seed_, "dataset", "hall." + style_).words(number);
     config.seed = words[0];
     config.coverage = 0.0;
-    const generate::Generator generator(config, SensorsConfig::of_the_paper().cameras.at("camera"));
+    const generate::Generator generator(config);
     constexpr int kMostDraws = 30;
     for (int draw = 0; draw < kMostDraws; ++draw) {
       const std::optional<generate::HallPlan> plan = generator.draw(draw);
@@ -106,8 +107,10 @@ class GeneratedSource final : public HallSource {
     throw InternalError("no hall of style " + style_ + " in " + std::to_string(kMostDraws) + " draws of seed " +
                         std::to_string(config.seed));
   }
-  // What the parts of scenes/builder name their conveyors.
-  std::vector<std::string> classes() const override { return {"conveyor"}; }
+  // What the parts of scenes/builder name their conveyors, and the generator its furniture.
+  std::vector<std::string> classes() const override {
+    return style_ == "home" ? generate::home_classes() : std::vector<std::string>{"conveyor"};
+  }
   // What generate::scenario_text gives every hall.
   std::vector<std::string> cameras() const override { return {"camera"}; }
   std::string description() const override {

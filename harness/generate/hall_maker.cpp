@@ -60,21 +60,21 @@ std::vector<double> coverage_along(const Scenario& scenario, const Scene& scene,
   return shares;
 }
 
-// Index of the plan's conveyor with this name.
+// Index of the plan's object with this name.
 std::size_t planned(const generate::HallPlan& plan, const std::string& name) {
-  const auto found = std::find_if(plan.conveyors.begin(), plan.conveyors.end(), [&](const auto& c) { return c.name == name; });
-  WARETWIN_CHECK(found != plan.conveyors.end(), "the built hall holds the plan's conveyors");
-  return static_cast<std::size_t>(found - plan.conveyors.begin());
+  const auto found = std::find_if(plan.objects.begin(), plan.objects.end(), [&](const auto& c) { return c.name == name; });
+  WARETWIN_CHECK(found != plan.objects.end(), "the built hall holds the plan's objects");
+  return static_cast<std::size_t>(found - plan.objects.begin());
 }
 
-// Further stops that bring every conveyor to the wanted share, each time the one that shows most of what is missed; `coverage` holds what
+// Further stops that bring every object to the wanted share, each time the one that shows most of what is missed; `coverage` holds what
 // the route sees. Empty where no stops do that.
 std::vector<generate::Stop> missing_stops(const generate::GenerateConfig& config, const generate::Generator& generator,
                                           const generate::HallPlan& plan, int draw, const Scenario& scenario, const Scene& scene,
                                           SurfaceCoverage& coverage) {
   constexpr double kMargin = 0.01;      // the route's frames come once a second, at times in the middle of a turn
   constexpr double kWorthwhile = 0.01;  // share of the viewable surface that a stop must add
-  constexpr std::size_t kMost = 3;      // a conveyor
+  constexpr std::size_t kMost = 3;      // an object
   const std::string& sensor = scenario.sensors.cameras.begin()->first;
   const CameraConfig& camera = scenario.sensors.cameras.begin()->second;
   std::vector<generate::Stop> stops;
@@ -111,9 +111,10 @@ std::string percent(double share) {
 
 MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folder, const HallMakerHooks& hooks) {
   expect_replaceable(folder);
-  const generate::Generator generator(config, SensorsConfig::of_the_paper().cameras.at("camera"));
+  const generate::Generator generator(config);
   StagedFolder staged(folder);
   const fs::path scenario_file = staged.path() / "scenario.yaml";
+  const bool home = config.style == "home";
   double best_worst = 0.0;
   for (int draw = 0; draw < kMostDraws; ++draw) {
     if (hooks.step) hooks.step();
@@ -128,7 +129,7 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     write_file(scenario_file, generate::scenario_text(*plan, config.seed));
     Scenario scenario = load_scenario(scenario_file);
     const auto scene = std::make_shared<const Scene>(build_scene(scenario));
-    WARETWIN_CHECK(scene->objects.size() == plan->conveyors.size(), "every planned conveyor is a true object");
+    WARETWIN_CHECK(scene->objects.size() == plan->objects.size(), "every planned object is a true object");
     SurfaceCoverage coverage(std::make_shared<RayCaster>(scene), scenario.sensors.cameras, scenario.robot);
     std::vector<double> shares = coverage_along(scenario, *scene, coverage);
     const auto enough = [&] { return std::all_of(shares.begin(), shares.end(), [&](double share) { return share >= config.coverage; }); };
@@ -144,12 +145,14 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     const double worst = shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
     best_worst = std::max(best_worst, worst);
     if (!enough()) {
-      if (hooks.in_vain) hooks.in_vain("hall " + std::to_string(draw + 1) + " shows only " + percent(worst) + " of a conveyor");
+      if (hooks.in_vain)
+        hooks.in_vain("hall " + std::to_string(draw + 1) + " shows only " + percent(worst) + " of " + (home ? "an object" : "a conveyor"));
       continue;
     }
 
     MadeHall made;
     made.name = plan->name;
+    made.what = plan->what;
     made.length_m = plan->length;
     made.width_m = plan->width;
     made.height_m = plan->height;
@@ -162,8 +165,8 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const std::size_t index = planned(*plan, scene->objects[i].name);
       const auto stops = std::count_if(plan->stops.begin(), plan->stops.end(),
-                                       [&](const generate::Stop& stop) { return stop.conveyor == static_cast<int>(index); });
-      made.conveyors.push_back({scene->objects[i], plan->conveyors[index].kind(), shares[i], static_cast<int>(stops)});
+                                       [&](const generate::Stop& stop) { return stop.object == static_cast<int>(index); });
+      made.objects.push_back({scene->objects[i], plan->objects[index].kind(), shares[i], static_cast<int>(stops)});
     }
     write_png(staged.path() / "plan.png", draw_plan(*scene, scenario.robot));
     staged.commit();
@@ -173,12 +176,15 @@ MadeHall make_hall(const generate::GenerateConfig& config, const fs::path& folde
   std::snprintf(size, sizeof size, "%gx%g", config.length_m, config.width_m);
   const std::string where = config.length_m > 0 ? "size " + std::string(size) : "style " + config.style;
   if (best_worst > 0.0) {
-    throw Error(where + ": no route of " + std::to_string(kMostDraws) + " halls shows " + percent(config.coverage) +
-                " of every conveyor (best: " + percent(best_worst) + "); expected a lower coverage, fewer conveyors or a larger hall");
+    throw Error(where + ": no route of " + std::to_string(kMostDraws) + " halls shows " + percent(config.coverage) + " of every " +
+                (home ? "object" : "conveyor") + " (best: " + percent(best_worst) + "); expected a lower coverage, " +
+                (home ? "less clutter" : "fewer conveyors") + " or a larger hall");
   }
   throw Error(where + ": no room for " +
-              (config.conveyors > 0 ? std::to_string(config.conveyors) + " conveyors" : std::string("the conveyors")) +
-              " and a vehicle that drives between them; expected fewer conveyors, less clutter or a larger hall");
+              (home                   ? std::string("the furniture")
+               : config.conveyors > 0 ? std::to_string(config.conveyors) + " conveyors"
+                                      : std::string("the conveyors")) +
+              " and a vehicle that drives between them; expected " + (home ? "" : "fewer conveyors, ") + "less clutter or a larger hall");
 }
 
 }  // namespace waretwin

@@ -115,9 +115,10 @@ Command add_dataset_command(CLI::App& program) {
   auto options = std::make_shared<DatasetOptions>();
   CLI::App* command = program.add_subcommand("dataset", "labelled training pictures of a detector, from scenarios and random halls");
   command->add_option("SCENARIO", options->scenarios, "scenario files whose halls are photographed, in turn");
-  command->add_option("--generate", options->styles, "halls drawn on the fly, a new one each time: cell, warehouse or flat (repeatable)")
+  command
+      ->add_option("--generate", options->styles, "halls drawn on the fly, a new one each time: cell, warehouse, flat or home (repeatable)")
       ->type_name("STYLE")
-      ->check(CLI::IsMember({"cell", "warehouse", "flat"}));
+      ->check(CLI::IsMember({"cell", "warehouse", "flat", "home"}));
   command->add_option("--out", options->out, "folder of the set; one that is half done is gone on with")->required()->type_name("DIR");
   command->add_option("--count", options->count, "pictures in all (default 100)")
       ->type_name("N")

@@ -66,9 +66,9 @@ int generate_hall(const GenerateOptions& options) {
                         progress.update(draws / (draws + 1), why);
                       }});
   }
-  std::printf("%s: %g x %g x %g m, %zu conveyors, %d other things\n", hall.name.c_str(), hall.length_m, hall.width_m, hall.height_m,
-              hall.conveyors.size(), hall.things);
-  for (const MadeConveyor& c : hall.conveyors) {
+  std::printf("%s: %g x %g x %g m, %zu %s, %d other things\n", hall.name.c_str(), hall.length_m, hall.width_m, hall.height_m,
+              hall.objects.size(), hall.what.c_str(), hall.things);
+  for (const MadeObject& c : hall.objects) {
     const Cuboid& box = c.object.cuboid;
     std::printf("  %2d %-18s %.2f x %.2f x %.2f m at (%6.2f, %6.2f, %.2f), yaw %5.1f deg; %d stops, %3.0f %% seen\n", c.object.id,
                 c.kind.c_str(), box.size.x(), box.size.y(), box.size.z(), box.centre.x(), box.centre.y(), box.centre.z(),
@@ -84,30 +84,32 @@ int generate_hall(const GenerateOptions& options) {
 
 Command add_generate_command(CLI::App& program) {
   auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = program.add_subcommand("generate", "a random hall with conveyors and a route that shows them");
+  CLI::App* command =
+      program.add_subcommand("generate", "a random hall with conveyors, or a furnished room, and a route that shows its objects");
   command->add_option("--out", options->out, "folder for scenario.yaml, hall.glb and plan.png; an earlier generated hall is replaced")
       ->required()
       ->type_name("DIR");
   command
       ->add_option("--style", options->style,
                    "cell: stations with clutter, like the AgiProbot's; warehouse: conveyor lines, racks, pallets; flat: a bare room, for "
-                   "quick tests")
+                   "quick tests; home: a furnished room")
       ->capture_default_str()
-      ->check(CLI::IsMember({"cell", "warehouse", "flat"}));
+      ->check(CLI::IsMember({"cell", "warehouse", "flat", "home"}));
   command->add_option("--size", options->size, "metres of floor along x and y, e.g. 12x6 (default: drawn)")->type_name("LxW");
-  command->add_option("--conveyors", options->conveyors, "how many (default: drawn; a cell has 3 to 6)")
+  command->add_option("--conveyors", options->conveyors, "how many (default: drawn; a cell has 3 to 6; a home has none)")
       ->type_name("N")
       ->check(CLI::Range(1, 200));
   command
       ->add_option("--coverage", options->coverage,
-                   "share of each conveyor's viewable surface that depth views along the route must see (default 0.8; 0: any)")
+                   "share of each object's viewable surface that depth views along the route must see (default 0.8; 0: any)")
       ->type_name("SHARE")
       ->check(number_from_to(0, 0.95));
   options->common.add_to(*command);
   command->get_option("--seed")->description("another hall; the same seed gives the same bytes (default 1)");
   command->footer(
       "Example:\n  waretwin generate --out halls/7 --seed 7\n  waretwin run halls/7/scenario.yaml --out out/7\n"
-      "  waretwin generate --out halls/big --style warehouse --size 30x20 --conveyors 14\n\n"
+      "  waretwin generate --out halls/big --style warehouse --size 30x20 --conveyors 14\n"
+      "  waretwin generate --out halls/home --style home --seed 3\n\n"
       "--set takes generate.clutter, generate.close_share, generate.clearance_m, generate.wait_s and the options' own keys.");
   return {command, [options] { return generate_hall(*options); }};
 }

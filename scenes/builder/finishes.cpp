@@ -5,54 +5,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.h"
+#include "scenes/builder/finish_kinds.h"
+#include "scenes/builder/home_finishes.h"
 #include "scenes/builder/paint.h"
 #include "scenes/builder/pictures.h"
 
 namespace waretwin::builder {
 namespace {
 
-using Recipe = std::function<Finish()>;
 using cv::Scalar;
-
-Finish plain(const Eigen::Vector3d& colour, double metallic, double roughness, double reflectivity) {
-  Finish f;
-  f.colour = colour;
-  f.metallic = metallic;
-  f.roughness = roughness;
-  f.reflectivity_850nm = reflectivity;
-  return f;
-}
-
-Finish textured(const cv::Mat& texture, double width_m, double height_m, double metallic, double roughness, double reflectivity) {
-  Finish f = plain({1, 1, 1}, metallic, roughness, reflectivity);
-  f.texture = texture;
-  f.texture_width_m = width_m;
-  f.texture_height_m = height_m;
-  return f;
-}
-
-// Painted or powder-coated metal: fine grain, a little dirt, some scratches down to the metal.
-Finish painted(const std::string& key, const Scalar& bgr, double roughness, double reflectivity, int scratches = 25) {
-  cv::Mat t = mottled(256, 256, bgr, 5, 5, key);
-  add_stains(t, -22, 0.62, 4, key);
-  add_scratches(t, scratches, 26, {150, 150, 150}, 0.45, key);
-  return textured(t, 0.8, 0.8, 0.0, roughness, reflectivity);
-}
-
-Scalar bgr_of(const Eigen::Vector3d& srgb) { return {255 * srgb.z(), 255 * srgb.y(), 255 * srgb.x()}; }
-
-Finish picture_of(const cv::Mat& picture, double roughness = 0.5, double reflectivity = 0.7) {
-  Finish f = textured(picture, 1, 1, 0, roughness, reflectivity);
-  f.picture = true;
-  return f;
-}
-
-Finish screen(const cv::Mat& picture) {
-  Finish f = picture_of(picture, 0.25, 0.1);
-  f.emissive = {0.9, 0.9, 0.9};
-  f.texture_glows = true;
-  return f;
-}
 
 Finish concrete_floor() {
   cv::Mat t = mottled(1024, 1024, {186, 189, 188}, 14, 7, "floor");
@@ -122,21 +83,6 @@ Finish brushed_aluminium() {
   return textured(t, 0.5, 0.25, 0.35, 0.45, 0.6);
 }
 
-Finish wood(const std::string& key, const Scalar& bgr, double contrast) {
-  cv::Mat t = mottled(512, 256, bgr, 8, 4, key);
-  add_streaks(t, contrast, 128, key + " fibre");
-  add_streaks(t, contrast, 512, key + " grain");
-  const cv::Mat warp = tiling_noise(512, 256, 2, 3, key + " rings");
-  for (int y = 0; y < t.rows; ++y) {
-    for (int x = 0; x < t.cols; ++x) {
-      const double ring = y * 0.06 + 6.0 * static_cast<double>(warp.at<float>(y, x));
-      const double phase = ring - static_cast<int>(ring);
-      if (phase > 0.82) t.at<cv::Vec3b>(y, x) *= 0.88;
-    }
-  }
-  return textured(t, 1.0, 0.5, 0, 0.65, 0.65);
-}
-
 Finish chipboard() {
   cv::Mat t = mottled(512, 512, {128, 168, 196}, 8, 12, "chipboard");
   const RandomStream random(0, "chipboard", "chips");
@@ -172,15 +118,6 @@ Finish grey_wall() {
   return textured(t, 2.0, 2.0, 0, 0.85, 0.6);
 }
 
-Finish fabric(const std::string& key, const Scalar& bgr) {
-  cv::Mat t = mottled(128, 128, bgr, 6, 14, key);
-  for (int k = 0; k < 128; k += 4) {
-    cv::line(t, {k, 0}, {k, 127}, bgr * 0.85, 1);
-    cv::line(t, {0, k}, {127, k}, bgr * 0.9, 1);
-  }
-  return textured(t, 0.12, 0.12, 0, 0.95, 0.35);
-}
-
 Finish mesh_fence() {
   cv::Mat t(128, 128, CV_8UC4, Scalar(50, 52, 52, 0));
   cv::rectangle(t, {0, 0}, {127, 11}, {50, 52, 52, 255}, cv::FILLED);
@@ -188,12 +125,6 @@ Finish mesh_fence() {
   Finish f = textured(t, 0.05, 0.05, 0.3, 0.6, 0.3);
   f.alpha_mask = true;
   f.double_sided = true;
-  return f;
-}
-
-Finish glowing(const Eigen::Vector3d& light) {
-  Finish f = plain({1, 1, 1}, 0, 0.5, 0.8);
-  f.emissive = light;
   return f;
 }
 
@@ -480,8 +411,9 @@ Finish plain_to_order(const Eigen::Vector3d& colour, double roughness, double re
 }
 
 Finish make_finish(const std::string& name) {
-  const auto found = recipes().find(name);
-  WARETWIN_CHECK(found != recipes().end(), name);
+  auto found = recipes().find(name);
+  if (found == recipes().end()) found = home_recipes().find(name);
+  WARETWIN_CHECK(found != home_recipes().end(), name);
   Finish finish = found->second();
   finish.name = name;
   return finish;
@@ -489,7 +421,9 @@ Finish make_finish(const std::string& name) {
 
 std::vector<std::string> finish_names() {
   std::vector<std::string> names;
-  for (const auto& entry : recipes()) names.push_back(entry.first);
+  for (const auto* table : {&recipes(), &home_recipes()}) {
+    for (const auto& entry : *table) names.push_back(entry.first);
+  }
   return names;
 }
 

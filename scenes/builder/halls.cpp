@@ -5,7 +5,7 @@
 
 namespace waretwin::builder {
 
-std::vector<std::string> hall_names() { return {"agiprobot", "warehouse"}; }
+std::vector<std::string> hall_names() { return {"agiprobot", "warehouse", "flat"}; }
 
 std::vector<HallFile> build_hall(const std::string& name) {
   Kit kit;
@@ -16,8 +16,10 @@ std::vector<HallFile> build_hall(const std::string& name) {
   } else if (name == "warehouse") {
     build_warehouse(kit);
     movers = {"carton", "tote", "person", "cart"};
+  } else if (name == "flat") {
+    build_flat(kit);
   } else {
-    throw Error("hall '" + name + "' is not known; expected agiprobot or warehouse");
+    throw Error("hall '" + name + "' is not known; expected agiprobot, warehouse or flat");
   }
   std::vector<HallFile> files = {{"hall.glb", kit.model.to_glb(name)}};
   for (const std::string& mover : movers) files.push_back({mover + ".glb", build_mover(mover)});

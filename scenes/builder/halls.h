@@ -12,6 +12,9 @@ namespace waretwin::builder {
 void build_agiprobot(Kit& kit);
 // A warehouse of 40 x 25 m with floor-standing conveyors. Origin in the middle of the floor, x along 40 m.
 void build_warehouse(Kit& kit);
+// A furnished flat of 9 x 7 m that stands in for the rooms of SceneNN (section 4.2): living room with kitchen, bedroom, bathroom, study.
+// Origin in the middle of the floor, x along 9 m.
+void build_flat(Kit& kit);
 
 std::vector<std::string> hall_names();
 

@@ -1,4 +1,4 @@
-// waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]: writes the models of one hall or all to OUT_FOLDER/HALL.
+// waretwin_build_halls OUT_FOLDER [agiprobot|warehouse|flat]: writes the models of one hall or all to OUT_FOLDER/HALL.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -11,7 +11,8 @@
 int main(int argc, char** argv) {
   using namespace waretwin;
   if (argc < 2 || argc > 3 || std::string(argv[1]).starts_with("-")) {
-    std::fprintf(stderr, "usage: waretwin_build_halls OUT_FOLDER [agiprobot|warehouse]\nexample: waretwin_build_halls scenes agiprobot\n");
+    std::fprintf(stderr,
+                 "usage: waretwin_build_halls OUT_FOLDER [agiprobot|warehouse|flat]\nexample: waretwin_build_halls scenes agiprobot\n");
     return 2;
   }
   try {

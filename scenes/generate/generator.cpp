@@ -8,12 +8,14 @@
 #include "scenes/generate/cell.h"
 #include "scenes/generate/dice.h"
 #include "scenes/generate/flat.h"
+#include "scenes/generate/home.h"
 #include "scenes/generate/warehouse.h"
 
 namespace waretwin::generate {
 
 namespace {
 
+constexpr double kSmallestRoom = 2.5;  // metres: a bathroom
 constexpr double kSmallestSide = 4.0;  // metres: a station, and before it a vehicle that turns
 
 std::string size_text(const GenerateConfig& c) {
@@ -40,10 +42,17 @@ void add_tyre_marks(HallPlan& plan, Dice& dice) {
 
 }  // namespace
 
-Generator::Generator(const GenerateConfig& config, const CameraConfig& camera) : config_(config), camera_(camera) {
+Generator::Generator(const GenerateConfig& config) : config_(config), vehicle_(vehicle_of(config.style)) {
+  const bool home = config.style == "home";
+  if (home && config.conveyors > 0) {
+    throw Error("conveyors " + std::to_string(config.conveyors) +
+                ": a home has none; expected style cell, warehouse or flat, or no number");
+  }
+  const double smallest = home ? kSmallestRoom : kSmallestSide;
   for (const double side : {config.length_m, config.width_m}) {
-    if (side > 0 && side < kSmallestSide) {
-      throw Error("size " + size_text(config) + ": too small for a vehicle to turn before a conveyor; expected at least 4x4 m");
+    if (side > 0 && side < smallest) {
+      throw Error("size " + size_text(config) + ": too small for a vehicle to turn before " +
+                  (home ? "furniture; expected at least 2.5x2.5 m" : "a conveyor; expected at least 4x4 m"));
     }
   }
 }
@@ -53,8 +62,8 @@ RouteWishes Generator::wishes(const HallPlan& plan, int attempt) const {
   return {.clearance_m = config_.clearance_m, .wait_s = config_.wait_s, .start = plan.entrance, .back_to_start = dice.chance(0.35)};
 }
 
-std::vector<Stop> Generator::possible_stops(const HallPlan& plan, int attempt, std::size_t conveyor) const {
-  return generate::possible_stops(plan, wishes(plan, attempt), conveyor);
+std::vector<Stop> Generator::possible_stops(const HallPlan& plan, int attempt, std::size_t object) const {
+  return generate::possible_stops(plan, wishes(plan, attempt), object);
 }
 
 void Generator::add_stops(HallPlan& plan, int attempt, const std::vector<Stop>& stops) const {
@@ -64,10 +73,14 @@ void Generator::add_stops(HallPlan& plan, int attempt, const std::vector<Stop>& 
 std::optional<HallPlan> Generator::draw(int attempt) const {
   std::optional<HallPlan> plan = config_.style == "cell"   ? draw_cell(config_, attempt)
                                  : config_.style == "flat" ? draw_flat(config_, attempt)
+                                 : config_.style == "home" ? draw_home(config_, attempt)
                                                            : draw_warehouse(config_, attempt);
-  if (!plan || !plan_route(*plan, camera_, wishes(*plan, attempt)).empty()) return std::nullopt;
+  if (!plan) return std::nullopt;
+  plan->robot = vehicle_.robot;
+  plan->sensors = vehicle_.sensors;
+  if (!plan_route(*plan, vehicle_.camera, wishes(*plan, attempt)).empty()) return std::nullopt;
   Dice dice(config_.seed, "marks", attempt);
-  if (config_.style != "flat") add_tyre_marks(*plan, dice);
+  if (config_.style != "flat" && config_.style != "home") add_tyre_marks(*plan, dice);
   return plan;
 }
 

@@ -60,6 +60,13 @@ std::string numbers(const std::vector<double>& values) {
   return "[" + text + "]";
 }
 
+// What of the drive is not as usual.
+std::string drive_text(const DriveConfig& drive) {
+  const DriveConfig usual;
+  if (drive.mass_kg == usual.mass_kg && drive.track_m == usual.track_m) return {};
+  return "  drive: {mass_kg: " + number(drive.mass_kg) + ", track_m: " + number(drive.track_m) + "}\n";
+}
+
 }  // namespace
 
 std::string build_glb(const HallPlan& plan) {
@@ -67,7 +74,7 @@ std::string build_glb(const HallPlan& plan) {
   for (const auto& [name, finish] : plan.finishes) kit.define(name, finish);
   const int hall = kit.group(plan.name, -1);
   build_room(kit, hall, plan);
-  for (const PlannedConveyor& conveyor : plan.conveyors) add_conveyor(kit, hall, conveyor);
+  for (const PlannedObject& object : plan.objects) add_planned_object(kit, hall, object);
   const int things = kit.group("things", hall);
   for (const PlacedItem& item : plan.items) item.item.add(kit, things, item.at);
   return kit.model.to_glb(plan.name);
@@ -76,8 +83,9 @@ std::string build_glb(const HallPlan& plan) {
 std::string scenario_text(const HallPlan& plan, std::uint64_t seed) {
   const RobotConfig& r = plan.robot;
   std::string text =
-      "# " + plan.title + " of " + number(plan.length) + " x " + number(plan.width) + " m with " + std::to_string(plan.conveyors.size()) +
-      " conveyors, made by `waretwin generate`.\n"
+      "# " + plan.title + " of " + number(plan.length) + " x " + number(plan.width) + " m with " + std::to_string(plan.objects.size()) +
+      " " + plan.what +
+      ", made by `waretwin generate`.\n"
       "# Lengths are metres, angles degrees. The world's z axis points up; its origin is the middle of the hall's floor. Keys not named "
       "here\n"
       "# keep their defaults; `waretwin inspect FILE --keys` shows all of them.\n"
@@ -87,7 +95,9 @@ std::string scenario_text(const HallPlan& plan, std::uint64_t seed) {
       "# Reseeds the sensors' errors and the wheels' slip. The hall itself never changes with it.\nseed: " +
       std::to_string(seed) +
       "\n\n"
-      "# Nodes of hall.glb that carry {\"waretwin\": {\"class\": \"conveyor\"}} in their extras are the true objects.\n"
+      "# Nodes of hall.glb that carry {\"waretwin\": {\"class\": \"" +
+      (plan.what == "conveyors" ? "conveyor" : "...") +
+      "\"}} in their extras are the true objects.\n"
       "models:\n  - file: hall.glb\n\n"
       "# hall.glb brings its lamps; this is the light that comes from everywhere else.\n"
       "lighting:\n  ambient: " +
@@ -97,8 +107,8 @@ std::string scenario_text(const HallPlan& plan, std::uint64_t seed) {
       "robot:\n  length_m: " +
       number(r.length_m) + "\n  width_m: " + number(r.width_m) + "\n  height_m: " + number(r.height_m) +
       "\n  speed_mps: " + number(r.speed_mps) + "\n  acceleration_mps2: " + number(r.acceleration_mps2) +
-      "\n  turn_rate_deg_s: " + number(r.turn_rate_deg_s) + "\n  turn_acceleration_deg_s2: " + number(r.turn_acceleration_deg_s2) +
-      "\n"
+      "\n  turn_rate_deg_s: " + number(r.turn_rate_deg_s) + "\n  turn_acceleration_deg_s2: " + number(r.turn_acceleration_deg_s2) + "\n" +
+      drive_text(r.drive) +
       "  # Places in order. The vehicle turns towards the next one, drives there straight, turns to heading_deg if given, and waits "
       "wait_s.\n"
       "  route:\n";
@@ -110,20 +120,12 @@ std::string scenario_text(const HallPlan& plan, std::uint64_t seed) {
     if (w.reverse) text += ", reverse: true";
     text += "}";
     if (next_stop < plan.stops.size() && w.heading_deg && plan.stops[next_stop].place == Eigen::Vector2d(w.x_m, w.y_m)) {
-      text += "  # " + plan.conveyors[static_cast<std::size_t>(plan.stops[next_stop].conveyor)].name;
+      text += "  # " + plan.objects[static_cast<std::size_t>(plan.stops[next_stop].object)].name;
       ++next_stop;
     }
     text += "\n";
   }
-  return text +
-         "\n# The vehicle's sensors by name. A preset stands for a product's data sheet; any of its values can be set beside it.\n"
-         "sensors:\n  cameras:\n    camera:\n      preset: azure_kinect\n      rate_hz: 15\n"
-         "      # On the vehicle's centre, 1.4 m high, looking forward and 45 degrees down.\n"
-         "      mount: {x_m: 0.0, y_m: 0.0, z_m: 1.4, pitch_deg: 45}\n"
-         "  lasers:\n    laser:\n      preset: sick_s300\n"
-         "      # At the front left corner, level, 0.3 m above the floor.\n"
-         "      mount: {x_m: 0.275, y_m: 0.2, z_m: 0.3, yaw_deg: 43.9}\n"
-         "  odometry:\n    rate_hz: 50\n";
+  return text + "\n" + plan.sensors;
 }
 
 }  // namespace waretwin::generate

@@ -9,13 +9,13 @@
 
 #include "scenes/builder/kit.h"
 #include "scenes/builder/parts/room.h"
-#include "scenes/generate/conveyor.h"
+#include "scenes/generate/planned_object.h"
 #include "scenes/generate/solid.h"
 #include "scenes/scenario.h"
 
 namespace waretwin::generate {
 
-// Anything that is not a conveyor: how it is built, and its box in its own frame.
+// Anything that is no true object: how it is built, and its box in its own frame.
 struct Item {
   std::function<void(builder::Kit& kit, int parent, const builder::Placement& at)> add;
   Eigen::AlignedBox3d extent;
@@ -55,11 +55,12 @@ struct PlannedWall {
 struct Stop {
   Eigen::Vector2d place;
   double heading_deg = 0.0;
-  int conveyor = 0;  // index of what it looks at
+  int object = 0;  // index of what it looks at
 };
 
 struct HallPlan {
   std::string name, title, description;
+  std::string what = "conveyors";                                    // its objects are
   double length = 0.0, width = 0.0, height = 3.2;                    // of the room, its floor's middle at the origin, its length along x
   std::map<std::string, std::function<builder::Finish()>> finishes;  // of this hall's own
   std::string floor = "concrete_floor", wall = "wall_paint";
@@ -68,12 +69,13 @@ struct HallPlan {
   std::vector<builder::Placement> lamps;
   double lamp_cd = 14.0;
   LightingConfig lighting;
-  std::vector<PlannedConveyor> conveyors;
+  std::vector<PlannedObject> objects;
   std::vector<PlacedItem> items;
   std::vector<FloorMark> marks;
-  std::vector<Solid> solids;     // of all items and conveyors
+  std::vector<Solid> solids;     // of all items and objects
   std::vector<Solid> kept_free;  // where nothing may be put
   RobotConfig robot;             // with the route
+  std::string sensors;           // what the vehicle carries, as its scenario says it (vehicle.h)
   std::vector<Stop> stops;       // in the order of the route
 
   // Whether a solid may stand there: within the walls by `margin`, off what stands there by `margin`, and off what is kept free.

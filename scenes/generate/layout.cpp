@@ -19,7 +19,7 @@ constexpr double kItemGap = 0.03;          // between things on the floor
 constexpr double kClutterGap = 0.05;       // between a conveyor and what stands beside it
 
 bool off_grid(const Station& station, double yaw_deg) {
-  return std::all_of(station.conveyors.begin(), station.conveyors.end(), [&](const PlannedConveyor& c) {
+  return std::all_of(station.conveyors.begin(), station.conveyors.end(), [&](const PlannedObject& c) {
     const double yaw = c.at.yaw_deg + yaw_deg;
     return std::abs(yaw - std::round(yaw)) > kOffGridDeg;
   });
@@ -63,7 +63,7 @@ bool within(const HallPlan& plan, const Solid& solid) {
 }
 
 // How far a conveyor reaches to the station's back.
-double turned_top(const PlannedConveyor& c) {
+double turned_top(const PlannedObject& c) {
   double top = -1e9;
   for (const Solid& s : c.solids()) {
     top = std::max(top, s.centre.y() + s.half.x() * std::abs(std::sin(s.yaw)) + s.half.y() * std::abs(std::cos(s.yaw)));
@@ -112,7 +112,7 @@ bool stand_somewhere(HallPlan& plan, std::vector<Standing>& standing, Station st
       const double back = station.footprint.max().y();
       // Behind a conveyor is too little room for a vehicle to see its back, or enough to drive there.
       double behind = 0.0;
-      for (const PlannedConveyor& c : station.conveyors) behind = std::max(behind, back - turned_top(c));
+      for (const PlannedObject& c : station.conveyors) behind = std::max(behind, back - turned_top(c));
       at = plan.walls[k].at(along, dice.between(0.10, std::max(0.16, 0.62 - behind)) + back, 0);
       at.yaw_deg += 180 + dice.between(-3.5, 3.5);
     }

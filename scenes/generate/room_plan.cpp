@@ -54,6 +54,29 @@ void draw_openings(PlannedWall& wall, double height, bool entrance, Dice& dice) 
   for (PlannedOpening& o : wall.openings) o.hole.along = to_mm(o.hole.along);
 }
 
+// Hangs a thing somewhere on a wall, off openings and what stands before it.
+void hang(HallPlan& plan, const PlannedWall& wall, double z, double half_width, const Item& item, Dice& dice) {
+  constexpr int kTries = 6;
+  for (int i = 0; i < kTries; ++i) {
+    const double along = dice.between(half_width + 0.2, wall.length() - half_width - 0.2);
+    const bool in_opening = std::any_of(wall.openings.begin(), wall.openings.end(), [&](const PlannedOpening& o) {
+      return std::abs(along - o.hole.along - o.hole.width / 2) < half_width + o.hole.width / 2 + 0.15;
+    });
+    if (in_opening) continue;
+    const Placement at = wall.at(to_mm(along), 0, z);
+    Solid solid = solid_of(item.extent, at);
+    // Its back is in the wall; what counts is what reaches into the room.
+    const double out = item.extent.max().y();
+    const Placement middle = wall.at(to_mm(along), 0.03 + out / 2, z);
+    solid.centre = {middle.x, middle.y};
+    solid.half.y() = out / 2;
+    if (std::any_of(plan.solids.begin(), plan.solids.end(), [&](const Solid& s) { return collide(solid, s, 0.02); })) continue;
+    plan.items.push_back({item, at});
+    plan.solids.push_back(solid);
+    return;
+  }
+}
+
 }  // namespace
 
 void draw_room(HallPlan& plan, double length, double width, double height, Dice& dice) {
@@ -150,47 +173,41 @@ ConveyorFinishes draw_finishes(HallPlan& plan, Dice& dice) {
 }
 
 void decorate_walls(HallPlan& plan, Dice& dice) {
-  const auto hang = [&](const PlannedWall& wall, double z, double half_width, const Item& item) {
-    constexpr int kTries = 6;
-    for (int i = 0; i < kTries; ++i) {
-      const double along = dice.between(half_width + 0.2, wall.length() - half_width - 0.2);
-      const bool in_opening = std::any_of(wall.openings.begin(), wall.openings.end(), [&](const PlannedOpening& o) {
-        return std::abs(along - o.hole.along - o.hole.width / 2) < half_width + o.hole.width / 2 + 0.15;
-      });
-      if (in_opening) continue;
-      const Placement at = wall.at(to_mm(along), 0, z);
-      Solid solid = solid_of(item.extent, at);
-      // Its back is in the wall; what counts is what reaches into the room.
-      const double out = item.extent.max().y();
-      const Placement middle = wall.at(to_mm(along), 0.03 + out / 2, z);
-      solid.centre = {middle.x, middle.y};
-      solid.half.y() = out / 2;
-      if (std::any_of(plan.solids.begin(), plan.solids.end(), [&](const Solid& s) { return collide(solid, s, 0.02); })) continue;
-      plan.items.push_back({item, at});
-      plan.solids.push_back(solid);
-      return;
-    }
-  };
   const std::vector<std::string> pictures = {"poster_safety", "poster_project", "poster_lifting", "whiteboard", "clock"};
   for (const PlannedWall& wall : plan.walls) {
     if (dice.chance(0.5)) {
       const double length = to_mm(std::min(wall.length() - 1.0, dice.between(1.0, 1.8)));
-      hang(wall, 0, length / 2, make_item([=](Kit& k, int p, const Placement& at) { builder::add_radiator(k, p, at, length); }));
+      hang(plan, wall, 0, length / 2, make_item([=](Kit& k, int p, const Placement& at) { builder::add_radiator(k, p, at, length); }),
+           dice);
     }
     if (dice.chance(0.6)) {
       const double length = to_mm(std::min(wall.length() - 1.0, dice.between(1.5, 5.0)));
-      hang(wall, 1.0, length / 2, make_item([=](Kit& k, int p, const Placement& at) { builder::add_cable_duct(k, p, at, length); }));
+      hang(plan, wall, 1.0, length / 2, make_item([=](Kit& k, int p, const Placement& at) { builder::add_cable_duct(k, p, at, length); }),
+           dice);
     }
-    if (dice.chance(0.4)) hang(wall, 1.1, 0.3, make_item([](Kit& k, int p, const Placement& at) { builder::add_switch_box(k, p, at); }));
     if (dice.chance(0.4))
-      hang(wall, 0.55, 0.15, make_item([](Kit& k, int p, const Placement& at) { builder::add_fire_extinguisher(k, p, at); }));
+      hang(plan, wall, 1.1, 0.3, make_item([](Kit& k, int p, const Placement& at) { builder::add_switch_box(k, p, at); }), dice);
+    if (dice.chance(0.4))
+      hang(plan, wall, 0.55, 0.15, make_item([](Kit& k, int p, const Placement& at) { builder::add_fire_extinguisher(k, p, at); }), dice);
     for (int i = dice.whole(0, 2); i > 0; --i) {
       const std::string picture = dice.pick(pictures);
       const double width = picture == "whiteboard" ? 1.5 : picture == "clock" ? 0.32 : to_mm(dice.between(0.55, 0.84));
       const double height = picture == "whiteboard" ? 1.0 : picture == "clock" ? 0.32 : to_mm(width * 1.414);
-      hang(wall, picture == "clock" ? 2.2 : 1.3, width / 2,
-           make_item([=](Kit& k, int p, const Placement& at) { builder::add_wall_picture(k, p, at, width, height, picture); }));
+      hang(plan, wall, picture == "clock" ? 2.2 : 1.3, width / 2,
+           make_item([=](Kit& k, int p, const Placement& at) { builder::add_wall_picture(k, p, at, width, height, picture); }), dice);
     }
+  }
+}
+
+void hang_paintings(HallPlan& plan, Dice& dice) {
+  for (const PlannedWall& wall : plan.walls) {
+    if (!dice.chance(0.5)) continue;
+    const bool upright = dice.chance(0.5);
+    const double width = to_mm(upright ? dice.between(0.36, 0.54) : dice.between(0.6, 0.9)),
+                 height = to_mm(upright ? width * 4 / 3 : width * 3 / 4);
+    const std::string picture = upright ? "painting_shapes" : "painting_hills";
+    hang(plan, wall, 1.35, width / 2,
+         make_item([=](Kit& k, int p, const Placement& at) { builder::add_wall_picture(k, p, at, width, height, picture); }), dice);
   }
 }
 

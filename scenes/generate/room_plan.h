@@ -16,5 +16,7 @@ ConveyorFinishes draw_finishes(HallPlan& plan, Dice& dice);
 
 // What hangs on walls, where nothing stands before it: posters, ducts, radiators, boxes.
 void decorate_walls(HallPlan& plan, Dice& dice);
+// The same for rooms that people live in.
+void hang_paintings(HallPlan& plan, Dice& dice);
 
 }  // namespace waretwin::generate

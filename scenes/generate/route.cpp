@@ -13,32 +13,36 @@ namespace waretwin::generate {
 
 namespace {
 
-constexpr double kNearest = 0.45;             // metres from a stop to the nearest of a conveyor
+constexpr double kNearest = 0.45;             // metres from a stop to the nearest of an object
 constexpr double kBestRange = 1.25;           // metres to its middle: beyond, depth gets worse
 constexpr double kTwoSides = 50.0;            // degrees between the first two directions
 constexpr double kBorder = 12.0;              // pixels to the picture's edge
-constexpr std::size_t kMostCandidates = 220;  // per conveyor
+constexpr std::size_t kMostCandidates = 220;  // per object
 
 constexpr double kFarthestDepth = 3.0;  // metres
 constexpr double kFlattest = 0.2;       // cosine to the normal below which a surface is too slanted to measure well
-constexpr double kFarAway = 3.0;        // metres to the nearest of a conveyor, of a stop that is better than none
+constexpr double kFarAway = 3.0;        // metres to the nearest of an object, of a stop that is better than none
 constexpr double kApart = 0.3;          // metres between such stops and the route's own
 
-// Under a floor-standing conveyor one sees from afar.
-double farthest(const PlannedConveyor& conveyor) { return std::holds_alternative<builder::TableTopConveyor>(conveyor.part) ? 1.7 : 2.2; }
+// Under a floor-standing conveyor one sees from afar; furniture is large, and a camera that looks ahead sees its feet from afar only.
+double farthest(const PlannedObject& object) {
+  if (std::holds_alternative<FurniturePart>(object.part)) return 2.6;
+  return std::holds_alternative<builder::TableTopConveyor>(object.part) ? 1.7 : 2.2;
+}
+double best_range_of(const PlannedObject& object) { return std::holds_alternative<FurniturePart>(object.part) ? 2.0 : kBestRange; }
 
-// One way to look at one conveyor.
+// One way to look at one object.
 struct Look {
   std::size_t place = 0;
   double heading = 0.0;
-  double range = 0.0;      // to the conveyor's middle
+  double range = 0.0;      // to the object's middle
   double bearing = 0.0;    // of the place, seen from there
   std::vector<bool> sees;  // by patch
 };
 
-// Free places at most `reach` from a conveyor, every n-th, so that large halls and small ones cost the same.
-std::vector<std::size_t> places_near(const FreeSpace& space, const PlannedConveyor& conveyor, double reach) {
-  const std::vector<Solid> solids = conveyor.solids();
+// Free places at most `reach` from an object, every n-th, so that large halls and small ones cost the same.
+std::vector<std::size_t> places_near(const FreeSpace& space, const PlannedObject& object, double reach) {
+  const std::vector<Solid> solids = object.solids();
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < space.places().size(); ++i) {
     double nearest = 1e9;
@@ -51,29 +55,31 @@ std::vector<std::size_t> places_near(const FreeSpace& space, const PlannedConvey
   return places;
 }
 
-// The middle of a conveyor; long ones are looked at piece by piece as well.
-std::vector<Eigen::Vector2d> aims_at(const PlannedConveyor& conveyor) {
-  const Eigen::Vector2d middle = conveyor.middle().head<2>();
+// The middle of an object; long ones are looked at piece by piece as well.
+std::vector<Eigen::Vector2d> aims_at(const PlannedObject& object) {
+  const Eigen::Vector2d middle = object.middle().head<2>();
   std::vector<Eigen::Vector2d> aims = {middle};
-  const std::vector<Solid> solids = conveyor.solids();
+  const std::vector<Solid> solids = object.solids();
   if (solids.size() != 1 || solids[0].half.x() < 0.5) return aims;
   const Eigen::Vector2d along(std::cos(solids[0].yaw), std::sin(solids[0].yaw));
   for (const double side : {-0.55, 0.55}) aims.push_back(middle + side * solids[0].half.x() * along);
   return aims;
 }
 
-// What may hide a conveyor: everything near it but what it stands on; its own deck hides its legs.
+// What may hide an object: everything near it but what it stands on or in; its own deck hides its legs.
 std::vector<Solid> occluders(const HallPlan& plan, std::size_t index) {
-  const PlannedConveyor& conveyor = plan.conveyors[index];
-  const Eigen::Vector3d middle = conveyor.middle();
-  double lowest = conveyor.at.z;
+  const PlannedObject& object = plan.objects[index];
+  const Eigen::Vector3d middle = object.middle();
+  double lowest = object.at.z;
   std::vector<Solid> list;
-  for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-    for (const Solid& s : plan.conveyors[i].decks()) list.push_back(s);
+  for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+    for (const Solid& s : plan.objects[i].decks()) list.push_back(s);
   }
   for (const PlacedItem& item : plan.items) {
     const Solid s = solid_of(item.item.extent, item.at);
-    if (s.high > lowest + 1e-4) list.push_back(s);
+    // An open case that an object stands in is empty where one looks at it.
+    const bool holds_it = distance(middle.head<2>(), s) <= 0 && s.low < middle.z() && middle.z() < s.high;
+    if (s.high > lowest + 1e-4 && !holds_it) list.push_back(s);
   }
   std::erase_if(list, [&](const Solid& s) { return distance(middle.head<2>(), s) > 3.0; });
   return list;
@@ -85,11 +91,12 @@ class Viewer {
       : camera_(camera),
         intrinsics_(camera.intrinsics()),
         space_(space),
-        patches_(plan.conveyors[index].surface()),
+        patches_(plan.objects[index].surface()),
         occluders_(occluders(plan, index)),
-        middle_(plan.conveyors[index].middle().head<2>()) {
-    const std::vector<std::size_t> places = places_near(space, plan.conveyors[index], farthest(plan.conveyors[index]));
-    const std::vector<Eigen::Vector2d> aims = aims_at(plan.conveyors[index]);
+        middle_(plan.objects[index].middle().head<2>()),
+        best_range_(best_range_of(plan.objects[index])) {
+    const std::vector<std::size_t> places = places_near(space, plan.objects[index], farthest(plan.objects[index]));
+    const std::vector<Eigen::Vector2d> aims = aims_at(plan.objects[index]);
     std::vector<std::vector<Look>> looks(places.size());
     parallel_for(places.size(), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) looks[i] = from(places[i], aims);
@@ -104,6 +111,7 @@ class Viewer {
     return sum;
   }
   std::size_t patch_count() const { return patches_.size(); }
+  double best_range() const { return best_range_; }
 
  private:
   std::vector<Look> from(std::size_t place, const std::vector<Eigen::Vector2d>& aims) const {
@@ -145,6 +153,7 @@ class Viewer {
   std::vector<SurfacePatch> patches_;
   std::vector<Solid> occluders_;
   Eigen::Vector2d middle_;
+  double best_range_;
   std::vector<Look> looks_;
 };
 
@@ -175,7 +184,7 @@ std::vector<Look> choose(const Viewer& viewer, const std::vector<std::size_t>& t
       if (apart && std::abs(to_degrees(wrap_angle(look.bearing - chosen[0].bearing))) < kTwoSides) continue;
       // What was seen before still counts a little: a second good look makes a better map.
       const double gain = viewer.area(fresh(look.sees, seen)) + 0.15 * viewer.area(look.sees);
-      const double score = gain / (1.0 + std::pow(std::max(0.0, look.range - kBestRange), 2));
+      const double score = gain / (1.0 + std::pow(std::max(0.0, look.range - viewer.best_range()), 2));
       if (score > best_score) {
         best_score = score;
         best = &look;
@@ -252,7 +261,7 @@ double rounded(double value, double step) { return std::round(value / step) * st
 struct PlannedLook {
   std::size_t place = 0;
   double heading = 0.0;
-  int conveyor = 0;
+  int object = 0;
 };
 
 double turning_radius(const HallPlan& plan, const RouteWishes& wishes) {
@@ -302,7 +311,7 @@ void lay_route(HallPlan& plan, const FreeSpace& space, const RouteWishes& wishes
     Waypoint& stop = route.back();
     stop.heading_deg = rounded(to_degrees(look.heading), 0.1);
     stop.wait_s = wishes.wait_s;
-    plan.stops.push_back({{stop.x_m, stop.y_m}, *stop.heading_deg, look.conveyor});
+    plan.stops.push_back({{stop.x_m, stop.y_m}, *stop.heading_deg, look.object});
   }
   if (wishes.back_to_start && order.size() > 1) {
     drive_to(order.back(), 0);
@@ -322,7 +331,7 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
   std::vector<int> unseen;
   std::vector<PlannedLook> looks;
   std::vector<std::size_t> taken;
-  for (std::size_t k = 0; k < plan.conveyors.size(); ++k) {
+  for (std::size_t k = 0; k < plan.objects.size(); ++k) {
     const std::vector<Look> chosen = choose(Viewer(plan, camera, space, k), taken);
     if (chosen.empty()) unseen.push_back(static_cast<int>(k));
     for (const Look& look : chosen) {
@@ -334,14 +343,14 @@ std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const Ro
   return unseen;
 }
 
-std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t conveyor) {
+std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t object) {
   const FreeSpace space(plan, turning_radius(plan, wishes));
   std::vector<Stop> stops;
-  for (const std::size_t place : places_near(space, plan.conveyors[conveyor], kFarAway)) {
+  for (const std::size_t place : places_near(space, plan.objects[object], kFarAway)) {
     const Eigen::Vector2d& p = space.places()[place];
     if (std::any_of(plan.stops.begin(), plan.stops.end(), [&](const Stop& s) { return (s.place - p).norm() < kApart; })) continue;
-    for (const Eigen::Vector2d& aim : aims_at(plan.conveyors[conveyor])) {
-      stops.push_back({p, rounded(to_degrees(std::atan2(aim.y() - p.y(), aim.x() - p.x())), 0.1), static_cast<int>(conveyor)});
+    for (const Eigen::Vector2d& aim : aims_at(plan.objects[object])) {
+      stops.push_back({p, rounded(to_degrees(std::atan2(aim.y() - p.y(), aim.x() - p.x())), 0.1), static_cast<int>(object)});
     }
   }
   return stops;
@@ -351,7 +360,7 @@ void add_stops(HallPlan& plan, const RouteWishes& wishes, const std::vector<Stop
   const FreeSpace space(plan, turning_radius(plan, wishes));
   std::vector<PlannedLook> looks;
   for (const std::vector<Stop>* list : {&std::as_const(plan.stops), &stops}) {
-    for (const Stop& stop : *list) looks.push_back({space.nearest(stop.place), to_radians(stop.heading_deg), stop.conveyor});
+    for (const Stop& stop : *list) looks.push_back({space.nearest(stop.place), to_radians(stop.heading_deg), stop.object});
   }
   lay_route(plan, space, wishes, looks);
 }

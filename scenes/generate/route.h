@@ -1,4 +1,4 @@
-// The route through a planned hall: from which places each conveyor is looked at, and the way between them.
+// The route through a planned hall: from which places each object is looked at, and the way between them.
 #pragma once
 
 #include <vector>
@@ -15,14 +15,14 @@ struct RouteWishes {
   bool back_to_start = false;
 };
 
-// Fills plan.stops and plan.robot.route. A conveyor is looked at from two directions at least where the hall allows, from as many places
+// Fills plan.stops and plan.robot.route. An object is looked at from two directions at least where the hall allows, from as many places
 // as it takes to see its surface (boxes stand for things, the camera's depth field is its own), each time turned towards it and standing.
-// The stops are driven to in a quick round. Returns the indices of conveyors that no free place shows; the route is then empty.
+// The stops are driven to in a quick round. Returns the indices of objects that no free place shows; the route is then empty.
 std::vector<int> plan_route(HallPlan& plan, const CameraConfig& camera, const RouteWishes& wishes);
 
-// Places from which the camera may see more of a conveyor, turned to it or to one of its ends, apart from the route's own stops; farther
+// Places from which the camera may see more of an object, turned to it or to one of its ends, apart from the route's own stops; farther
 // and flatter than what plan_route takes. For who can tell how much they show.
-std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t conveyor);
+std::vector<Stop> possible_stops(const HallPlan& plan, const RouteWishes& wishes, std::size_t object);
 
 // Adds stops, and orders the route anew.
 void add_stops(HallPlan& plan, const RouteWishes& wishes, const std::vector<Stop>& stops);

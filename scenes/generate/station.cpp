@@ -12,7 +12,7 @@ namespace {
 using builder::Placement;
 
 // The box of a part turned by a yaw, on the floor plan about the part's origin.
-Eigen::AlignedBox2d turned_extent(const ConveyorPart& part, double yaw_deg) {
+Eigen::AlignedBox2d turned_extent(const ObjectPart& part, double yaw_deg) {
   const Eigen::AlignedBox3d e = extent_of(part);
   Eigen::AlignedBox2d box;
   const Eigen::Rotation2Dd R(to_radians(yaw_deg));
@@ -31,7 +31,7 @@ void fit_footprint(Station& station) {
       }
     }
   };
-  for (const PlannedConveyor& c : station.conveyors) {
+  for (const PlannedObject& c : station.conveyors) {
     for (const Solid& s : c.solids()) extend(s);
   }
   for (const PlacedItem& item : station.supports) extend(solid_of(item.item.extent, item.at));
@@ -52,7 +52,7 @@ builder::TableTopConveyor draw_table_top(Dice& dice, const ConveyorFinishes& fin
   return c;
 }
 
-ConveyorPart draw_floor_part(Dice& dice, const ConveyorFinishes& finishes, double width, double height, bool curve) {
+ObjectPart draw_floor_part(Dice& dice, const ConveyorFinishes& finishes, double width, double height, bool curve) {
   const std::string frame = dice.pick(finishes.rails), belt = dice.pick(finishes.belts), roller = dice.pick(finishes.rollers);
   if (curve) {
     builder::CurveConveyor c;
@@ -124,7 +124,7 @@ Station draw_floor_station(Dice& dice, const ConveyorFinishes& finishes, int cou
   double x = 0.0;
   for (int i = 0; i < count; ++i) {
     const bool curve = dice.chance(count > 1 ? (i == 0 ? 0.0 : 0.5) : 0.3);
-    const ConveyorPart part = draw_floor_part(dice, finishes, width, height, curve);
+    const ObjectPart part = draw_floor_part(dice, finishes, width, height, curve);
     if (curve && count > 1) {
       // It begins where the segment before it ends, `apart` behind: its first edge faces -x.
       const auto& c = std::get<builder::CurveConveyor>(part);
@@ -144,7 +144,7 @@ Station draw_floor_station(Dice& dice, const ConveyorFinishes& finishes, int cou
   const double turn = count > 1 ? dice.between(-4, 4) : (dice.chance(0.3) ? 90.0 : 0.0) + dice.between(-9, 9);
   fit_footprint(station);
   const Eigen::Vector2d middle = station.footprint.center();
-  for (PlannedConveyor& c : station.conveyors) {
+  for (PlannedObject& c : station.conveyors) {
     c.at = placed({0, 0, 0, turn}, placed({-middle.x(), -middle.y(), 0, 0}, c.at));
   }
   fit_footprint(station);
@@ -163,7 +163,7 @@ Station draw_line(Dice& dice, const ConveyorFinishes& finishes, int count) {
   for (int i = 0; i < count; ++i) {
     const double apart = to_mm(dice.between(0.01, 0.03));
     const bool curve = i > 0 && i + 1 < count && curves < 2 && dice.chance(0.35);
-    const ConveyorPart part = draw_floor_part(dice, finishes, width, height, curve);
+    const ObjectPart part = draw_floor_part(dice, finishes, width, height, curve);
     const auto forward = [&] { return Eigen::Vector2d(std::cos(to_radians(heading)), std::sin(to_radians(heading))); };
     const auto left = [&] { return Eigen::Vector2d(-forward().y(), forward().x()); };
     if (curve) {
@@ -184,7 +184,7 @@ Station draw_line(Dice& dice, const ConveyorFinishes& finishes, int count) {
   }
   fit_footprint(station);
   const Eigen::Vector2d middle = station.footprint.center();
-  for (PlannedConveyor& c : station.conveyors) {
+  for (PlannedObject& c : station.conveyors) {
     c.at.x -= middle.x();
     c.at.y -= middle.y();
   }
@@ -193,11 +193,11 @@ Station draw_line(Dice& dice, const ConveyorFinishes& finishes, int count) {
 }
 
 void place_station(HallPlan& plan, const Station& station, const Placement& at) {
-  for (PlannedConveyor c : station.conveyors) {
-    c.name = "conveyor_" + std::to_string(plan.conveyors.size() + 1);
+  for (PlannedObject c : station.conveyors) {
+    c.name = "conveyor_" + std::to_string(plan.objects.size() + 1);
     c.at = placed(at, c.at);
     for (const Solid& solid : c.solids()) plan.solids.push_back(solid);
-    plan.conveyors.push_back(c);
+    plan.objects.push_back(c);
   }
   for (const PlacedItem& support : station.supports) plan.add(support.item, placed(at, support.at));
 }

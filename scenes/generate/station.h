@@ -11,7 +11,7 @@
 namespace waretwin::generate {
 
 struct Station {
-  std::vector<PlannedConveyor> conveyors;
+  std::vector<PlannedObject> conveyors;
   std::vector<PlacedItem> supports;
   std::vector<Top> tops;
   Eigen::AlignedBox2d footprint;

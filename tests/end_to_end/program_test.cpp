@@ -70,6 +70,7 @@ TEST(Program, SaysWhyItCannotGenerateAHall) {
   EXPECT_ONE_LINE(test::waretwin("generate --conveyors 0" + out), "--conveyors");
   EXPECT_ONE_LINE(test::waretwin("generate --coverage 1.5" + out), "0.95");
   EXPECT_ONE_LINE(test::waretwin("generate --size 5x4.5 --conveyors 12" + out), "12 conveyors");
+  EXPECT_ONE_LINE(test::waretwin("generate --style home --conveyors 5" + out), "conveyors 5: a home has none");
   EXPECT_ONE_LINE(test::waretwin("generate --set generate.cluter=1" + out), "clutter");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "bad input leaves nothing behind";
 }

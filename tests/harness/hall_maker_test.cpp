@@ -28,8 +28,8 @@ TEST(HallMaker, ShowsEveryConveyorAndTouchesNothing) {
     const test::TemporaryFolder folder;
     const fs::path place = folder.path() / "hall";
     const MadeHall made = make_hall(cell(seed), place);
-    EXPECT_GE(made.conveyors.size(), 3u);
-    EXPECT_LE(made.conveyors.size(), 6u);
+    EXPECT_GE(made.objects.size(), 3u);
+    EXPECT_LE(made.objects.size(), 6u);
     for (const char* name : {"scenario.yaml", "hall.glb", "plan.png"}) EXPECT_TRUE(fs::exists(place / name)) << name;
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "nothing is left beside it";
 
@@ -45,12 +45,27 @@ TEST(HallMaker, ShowsEveryConveyorAndTouchesNothing) {
     }
     motion.advance_to(motion.duration());
     EXPECT_TRUE(motion.report().contacts.empty());
-    for (const MadeConveyor& conveyor : made.conveyors) {
+    for (const MadeObject& conveyor : made.objects) {
       EXPECT_GE(conveyor.coverage, 0.8) << conveyor.object.name;
       EXPECT_GE(coverage.fraction(conveyor.object.id), 0.79) << conveyor.object.name;
       EXPECT_GE(conveyor.stops, 2) << conveyor.object.name;
     }
   }
+}
+
+TEST(HallMaker, ShowsWhatStandsInAHome) {
+  const test::TemporaryFolder folder;
+  generate::GenerateConfig config = cell(4);
+  config.style = "home";
+  const MadeHall made = make_hall(config, folder.path() / "hall");
+  EXPECT_EQ(made.what, "objects");
+  const Scenario scenario = load_scenario(folder.path() / "hall" / "scenario.yaml");
+  const auto caster = std::make_shared<RayCaster>(std::make_shared<const Scene>(build_scene(scenario)));
+  HallMotion motion(scenario, *caster);
+  motion.advance_to(motion.duration());
+  EXPECT_TRUE(motion.report().contacts.empty());
+  ASSERT_FALSE(made.objects.empty());
+  for (const MadeObject& object : made.objects) EXPECT_GE(object.coverage, 0.8) << object.object.name;
 }
 
 TEST(HallMaker, GivesTheSameBytesAtAnyNumberOfThreads) {

@@ -1,7 +1,9 @@
 // The halls that are shipped: rebuilding gives what is committed, and they hold what they should.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -78,7 +80,9 @@ TEST_P(ShippedHall, MeshesAreSound) {
   }
 }
 
-TEST_P(ShippedHall, ConveyorsStandOnSomethingAndHoldNothing) {
+class ConveyorHall : public testing::TestWithParam<std::string> {};
+
+TEST_P(ConveyorHall, ConveyorsStandOnSomethingAndHoldNothing) {
   const Hall hall = load(GetParam());
   for (const TrueObject& object : hall.scene.objects) {
     EXPECT_EQ(object.class_name, "conveyor") << object.name;
@@ -94,7 +98,7 @@ TEST_P(ShippedHall, ConveyorsStandOnSomethingAndHoldNothing) {
   }
 }
 
-TEST_P(ShippedHall, ConveyorsDoNotMeet) {
+TEST_P(ConveyorHall, ConveyorsDoNotMeet) {
   const Hall hall = load(GetParam());
   const auto& objects = hall.scene.objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -112,6 +116,7 @@ TEST_P(ShippedHall, RouteIsClear) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedHall, testing::ValuesIn(builder::hall_names()), [](const auto& tested) { return tested.param; });
+INSTANTIATE_TEST_SUITE_P(All, ConveyorHall, testing::Values("agiprobot", "warehouse"), [](const auto& tested) { return tested.param; });
 
 TEST(AgiprobotHall, HoldsFourTableTopConveyors) {
   const Hall hall = load("agiprobot");
@@ -158,6 +163,74 @@ TEST(WarehouseHall, HoldsStraightAndCurvedConveyorsOnTheFloor) {
   const Eigen::AlignedBox3f box = hall.scene.bounds();
   EXPECT_NEAR(box.sizes().x(), 40.0f, 0.3f);
   EXPECT_NEAR(box.sizes().y(), 25.0f, 0.3f);
+}
+
+TEST(FlatHall, HoldsTheNineClassesInBelievableSizes) {
+  const Hall hall = load("flat");
+  struct Range {
+    int count;
+    Eigen::Vector3d least, most;  // dx >= dy, and height
+  };
+  const std::map<std::string, Range> expected = {
+      {"bed", {1, {1.9, 0.9, 0.7}, {2.2, 1.9, 1.2}}},        {"chair", {6, {0.4, 0.4, 0.8}, {0.7, 0.7, 1.15}}},
+      {"sofa", {2, {0.8, 0.8, 0.75}, {2.4, 1.0, 1.0}}},      {"table", {3, {1.0, 0.5, 0.4}, {1.6, 0.9, 0.8}}},
+      {"books", {6, {0.25, 0.15, 0.06}, {1.1, 0.25, 0.3}}},  {"refrigerator", {1, {0.55, 0.5, 1.2}, {0.75, 0.7, 1.9}}},
+      {"television", {1, {1.0, 0.1, 0.6}, {1.3, 0.3, 0.8}}}, {"toilet", {1, {0.6, 0.35, 0.7}, {0.75, 0.45, 0.9}}},
+      {"bag", {3, {0.3, 0.12, 0.35}, {0.45, 0.35, 0.55}}}};
+  std::map<std::string, int> counts;
+  std::set<std::string> names;
+  for (const TrueObject& object : hall.scene.objects) {
+    ASSERT_TRUE(expected.contains(object.class_name)) << object.class_name;
+    const Range& range = expected.at(object.class_name);
+    ++counts[object.class_name];
+    names.insert(object.name);
+    EXPECT_TRUE((object.cuboid.size.array() >= range.least.array()).all()) << object.name << ": " << object.cuboid.size.transpose();
+    EXPECT_TRUE((object.cuboid.size.array() <= range.most.array()).all()) << object.name << ": " << object.cuboid.size.transpose();
+  }
+  for (const auto& [name, range] : expected) EXPECT_EQ(counts[name], range.count) << name;
+  EXPECT_EQ(names.size(), hall.scene.objects.size()) << "each has a name of its own";
+}
+
+TEST(FlatHall, ObjectsStandOnSomethingAndCutIntoNothing) {
+  const Hall hall = load("flat");
+  for (std::size_t i = 0; i < hall.scene.objects.size(); ++i) {
+    const TrueObject& object = hall.scene.objects[i];
+    const Cuboid& c = object.cuboid;
+    const Solid below = solid_of(c, 0.02, c.bottom() - 0.002, c.bottom() + 0.0005);
+    const std::set<std::string> support =
+        test::things_in(hall.scene, below, [&](const Instance& instance) { return instance.object != static_cast<int>(i); });
+    EXPECT_FALSE(support.empty()) << object.name << " floats";
+    const std::set<std::string> cut = test::cuts_into(hall.scene, static_cast<int>(i));
+    EXPECT_TRUE(cut.empty()) << object.name << " is cut by " << joined(cut);
+  }
+}
+
+TEST(FlatHall, IsNineBySevenMetresAndShowsEveryRoom) {
+  const Hall hall = load("flat");
+  const Eigen::AlignedBox3f box = hall.scene.bounds();
+  EXPECT_NEAR(box.min().z(), 0.0f, 1e-4f);
+  EXPECT_NEAR(box.sizes().x(), 9.0f, 0.3f);  // windows and doors are set into the walls
+  EXPECT_NEAR(box.sizes().y(), 7.0f, 0.3f);
+  // Into every room: left and right of the walls between them.
+  const auto visits = [&](double x0, double y0, double x1, double y1) {
+    const auto& route = hall.scenario.robot.route;
+    return std::any_of(route.begin(), route.end(),
+                       [&](const Waypoint& w) { return w.heading_deg && w.x_m > x0 && w.x_m < x1 && w.y_m > y0 && w.y_m < y1; });
+  };
+  EXPECT_TRUE(visits(-4.5, -3.5, 0.9, 0.7)) << "living room";
+  EXPECT_TRUE(visits(0.9, -3.5, 4.5, -0.5)) << "kitchen";
+  EXPECT_TRUE(visits(0.9, -0.5, 4.5, 3.5)) << "bedroom";
+  EXPECT_TRUE(visits(-1.4, 0.7, 0.9, 3.5)) << "bathroom";
+  EXPECT_TRUE(visits(-4.5, 0.7, -1.4, 3.5)) << "study";
+}
+
+// The check that the flat's test rests on.
+TEST(PiercedTriangles, AreThoseThatASegmentPassesThrough) {
+  const std::array<Eigen::Vector3d, 3> t = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)};
+  EXPECT_TRUE(test::pierces({0.2, 0.2, -1}, {0.3, 0.3, 1}, t, 0.001));
+  EXPECT_FALSE(test::pierces({0.2, 0.2, 0}, {0.3, 0.3, 1}, t, 0.001)) << "begins on it";
+  EXPECT_FALSE(test::pierces({0.8, 0.8, -1}, {0.8, 0.8, 1}, t, 0.001)) << "passes beside it";
+  EXPECT_FALSE(test::pierces({0.2, 0.2, 0.5}, {0.3, 0.3, 1}, t, 0.001)) << "ends before it";
 }
 
 TEST(ShippedHalls, RejectAnUnknownName) { EXPECT_THROW(builder::build_hall("castle"), Error); }

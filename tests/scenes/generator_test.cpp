@@ -14,7 +14,9 @@
 #include "core/random.h"
 #include "scenes/generate/free_space.h"
 #include "scenes/generate/hall_files.h"
+#include "scenes/generate/home.h"
 #include "scenes/generate/station.h"
+#include "scenes/generate/vehicle.h"
 #include "scenes/scenario.h"
 #include "tests/scenes/hall_checks.h"
 #include "tests/support/expect_error.h"
@@ -24,7 +26,7 @@ namespace waretwin::generate {
 namespace {
 
 HallPlan planned(const GenerateConfig& config) {
-  const Generator generator(config, CameraConfig{});
+  const Generator generator(config);
   for (int attempt = 0; attempt < 30; ++attempt) {
     std::optional<HallPlan> plan = generator.draw(attempt);
     if (plan) return *std::move(plan);
@@ -61,28 +63,28 @@ TEST(GeneratedCells, KeepTheirPromisesOnPaper) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     const HallPlan plan = planned(cell(seed));
-    EXPECT_GE(plan.conveyors.size(), 3u);
-    EXPECT_LE(plan.conveyors.size(), 6u);
-    counts.insert(plan.conveyors.size());
-    std::vector<int> stops(plan.conveyors.size(), 0);
-    for (const Stop& stop : plan.stops) ++stops[static_cast<std::size_t>(stop.conveyor)];
-    for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-      const PlannedConveyor& c = plan.conveyors[i];
+    EXPECT_GE(plan.objects.size(), 3u);
+    EXPECT_LE(plan.objects.size(), 6u);
+    counts.insert(plan.objects.size());
+    std::vector<int> stops(plan.objects.size(), 0);
+    for (const Stop& stop : plan.stops) ++stops[static_cast<std::size_t>(stop.object)];
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+      const PlannedObject& c = plan.objects[i];
       kinds.insert(c.kind());
       EXPECT_GE(stops[i], 2) << c.name;
       EXPECT_GT(std::abs(c.at.yaw_deg - std::round(c.at.yaw_deg)), 0.1) << c.name << " stands on the grid of whole degrees";
-      for (std::size_t k = i + 1; k < plan.conveyors.size(); ++k) {
+      for (std::size_t k = i + 1; k < plan.objects.size(); ++k) {
         double between = 1e9;
         for (const Solid& a : c.solids()) {
-          for (const Solid& b : plan.conveyors[k].solids()) between = std::min(between, gap(a, b));
+          for (const Solid& b : plan.objects[k].solids()) between = std::min(between, gap(a, b));
         }
-        EXPECT_GT(between, 0.01) << c.name << ", " << plan.conveyors[k].name;
+        EXPECT_GT(between, 0.01) << c.name << ", " << plan.objects[k].name;
         close_pairs += between < 0.32 ? 1 : 0;
       }
     }
     const auto owner = [&](const Solid& solid) {
-      for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-        for (const Solid& s : plan.conveyors[i].solids()) {
+      for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+        for (const Solid& s : plan.objects[i].solids()) {
           if (s.centre == solid.centre && s.low == solid.low) return static_cast<int>(i);
         }
       }
@@ -109,8 +111,8 @@ TEST(GeneratedCells, AreWhatTheyWereOnPaperOnceBuilt) {
     EXPECT_TRUE(hall.scene.notes.empty()) << hall.scene.notes.front();
     EXPECT_EQ(hall.scenario.seed, seed);
     EXPECT_EQ(hall.scenario.robot.route.size(), plan.robot.route.size());
-    ASSERT_EQ(hall.scene.objects.size(), plan.conveyors.size());
-    for (const PlannedConveyor& c : plan.conveyors) {
+    ASSERT_EQ(hall.scene.objects.size(), plan.objects.size());
+    for (const PlannedObject& c : plan.objects) {
       SCOPED_TRACE(c.name);
       const auto found =
           std::find_if(hall.scene.objects.begin(), hall.scene.objects.end(), [&](const TrueObject& o) { return o.name == c.name; });
@@ -155,12 +157,12 @@ TEST(GeneratedCells, TakeTheSizeAndTheNumberThatOneAsksFor) {
   config.conveyors = 2;
   config.clutter = 0;
   const HallPlan plan = planned(config);
-  EXPECT_EQ(plan.conveyors.size(), 2u);
+  EXPECT_EQ(plan.objects.size(), 2u);
   EXPECT_EQ(plan.length, 9.5);
   EXPECT_EQ(plan.width, 7.25);
   GenerateConfig small = config;
   small.width_m = 3.0;
-  EXPECT_ERROR(Generator(small, CameraConfig{}), "9.5x3", "4x4");
+  EXPECT_ERROR(Generator{small}, "9.5x3", "4x4");
 }
 
 TEST(GeneratedCells, ClutterIsWhatOneAsksFor) {
@@ -179,23 +181,23 @@ TEST(GeneratedWarehouses, HoldLinesThatVehiclesDriveAround) {
     SCOPED_TRACE(seed);
     config.seed = seed;
     const HallPlan plan = planned(config);
-    EXPECT_GE(plan.conveyors.size(), 6u);
-    EXPECT_LE(plan.conveyors.size(), 10u);
+    EXPECT_GE(plan.objects.size(), 6u);
+    EXPECT_LE(plan.objects.size(), 10u);
     EXPECT_GT(plan.length * plan.width, 150.0);
     EXPECT_GT(plan.items.size(), 10u);
     const LoadedHall hall = load(plan, seed);
-    ASSERT_EQ(hall.scene.objects.size(), plan.conveyors.size());
+    ASSERT_EQ(hall.scene.objects.size(), plan.objects.size());
     EXPECT_LT(hall.scene.triangle_count(), 1'500'000u);
     const std::set<std::string> met = test::on_the_route(hall.scene, hall.scenario.robot, 0.05);
     EXPECT_TRUE(met.empty()) << test::joined(met);
-    for (std::size_t i = 0; i < plan.conveyors.size(); ++i) {
-      kinds.insert(plan.conveyors[i].kind());
-      for (std::size_t k = i + 1; k < plan.conveyors.size(); ++k) {
-        const auto* a = std::get_if<builder::FloorConveyor>(&plan.conveyors[i].part);
-        const auto* b = std::get_if<builder::FloorConveyor>(&plan.conveyors[k].part);
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+      kinds.insert(plan.objects[i].kind());
+      for (std::size_t k = i + 1; k < plan.objects.size(); ++k) {
+        const auto* a = std::get_if<builder::FloorConveyor>(&plan.objects[i].part);
+        const auto* b = std::get_if<builder::FloorConveyor>(&plan.objects[k].part);
         if (!a || !b) continue;
-        const double between = gap(plan.conveyors[i].solids()[0], plan.conveyors[k].solids()[0]);
-        EXPECT_GT(between, 0.005) << plan.conveyors[i].name << ", " << plan.conveyors[k].name;
+        const double between = gap(plan.objects[i].solids()[0], plan.objects[k].solids()[0]);
+        EXPECT_GT(between, 0.005) << plan.objects[i].name << ", " << plan.objects[k].name;
         bolted += between < 0.04 ? 1 : 0;
       }
     }
@@ -233,16 +235,110 @@ TEST(GeneratedFlats, AreBareAndSmall) {
   GenerateConfig config;
   config.style = "flat";
   const HallPlan plan = planned(config);
-  EXPECT_GE(plan.conveyors.size(), 2u);
-  EXPECT_LE(plan.conveyors.size(), 3u);
+  EXPECT_GE(plan.objects.size(), 2u);
+  EXPECT_LE(plan.objects.size(), 3u);
   EXPECT_LT(build_glb(plan).size(), 600'000u);
-  for (const PlannedConveyor& c : plan.conveyors) EXPECT_TRUE(c.kind().starts_with("table-top")) << c.kind();
+  for (const PlannedObject& c : plan.objects) EXPECT_TRUE(c.kind().starts_with("table-top")) << c.kind();
   for (const PlannedWall& wall : plan.walls) EXPECT_TRUE(wall.openings.empty());
 }
 
+GenerateConfig home(std::uint64_t seed) {
+  GenerateConfig config;
+  config.style = "home";
+  config.seed = seed;
+  return config;
+}
+
+TEST(GeneratedHomes, KeepTheirPromisesOnPaper) {
+  std::set<std::string> classes, titles;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const HallPlan plan = planned(home(seed));
+    titles.insert(plan.title);
+    ASSERT_FALSE(plan.objects.empty());
+    std::vector<int> stops(plan.objects.size(), 0);
+    for (const Stop& stop : plan.stops) ++stops[static_cast<std::size_t>(stop.object)];
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < plan.objects.size(); ++i) {
+      const PlannedObject& object = plan.objects[i];
+      classes.insert(std::get<FurniturePart>(object.part).class_name);
+      names.insert(object.name);
+      EXPECT_GE(stops[i], 2) << object.name;
+      EXPECT_GT(std::abs(object.at.yaw_deg - std::round(object.at.yaw_deg)), 0.1) << object.name << " stands on the grid of whole degrees";
+    }
+    EXPECT_EQ(names.size(), plan.objects.size());
+    EXPECT_EQ(plan.robot.width_m, vehicle_of("home").robot.width_m);
+  }
+  EXPECT_EQ(classes, std::set<std::string>(home_classes().begin(), home_classes().end()));
+  EXPECT_GE(titles.size(), 5u);
+}
+
+TEST(GeneratedHomes, AreFurnishedSoThatNothingCutsIntoAnObject) {
+  for (const std::uint64_t seed : {2, 7, 8}) {
+    SCOPED_TRACE(seed);
+    const HallPlan plan = planned(home(seed));
+    const LoadedHall hall = load(plan, seed);
+    EXPECT_TRUE(hall.scene.notes.empty()) << hall.scene.notes.front();
+    ASSERT_EQ(hall.scene.objects.size(), plan.objects.size());
+    for (std::size_t i = 0; i < hall.scene.objects.size(); ++i) {
+      const TrueObject& object = hall.scene.objects[i];
+      const auto found =
+          std::find_if(plan.objects.begin(), plan.objects.end(), [&](const PlannedObject& o) { return o.name == object.name; });
+      ASSERT_NE(found, plan.objects.end());
+      const auto& part = std::get<FurniturePart>(found->part);
+      EXPECT_EQ(object.class_name, part.class_name);
+      EXPECT_NEAR(object.cuboid.bottom(), found->at.z, 0.002) << object.name;
+      EXPECT_NEAR(object.cuboid.size.z(), part.extent.sizes().z(), 0.002) << object.name;
+      // The minimum-area box is never larger than the part's own.
+      EXPECT_LE(object.cuboid.size.x() * object.cuboid.size.y(), part.extent.sizes().x() * part.extent.sizes().y() + 1e-3) << object.name;
+      const std::set<std::string> below =
+          test::things_in(hall.scene, test::solid_of(object.cuboid, 0.02, object.cuboid.bottom() - 0.002, object.cuboid.bottom() + 0.0005),
+                          [&](const Instance& instance) { return instance.object != static_cast<int>(i); });
+      EXPECT_FALSE(below.empty()) << object.name << " floats";
+      const std::set<std::string> cut = test::cuts_into(hall.scene, static_cast<int>(i));
+      EXPECT_TRUE(cut.empty()) << object.name << " is cut by " << test::joined(cut);
+    }
+    const std::set<std::string> met = test::on_the_route(hall.scene, hall.scenario.robot, 0.05);
+    EXPECT_TRUE(met.empty()) << test::joined(met);
+    // What the route was planned for is what drives there.
+    const CameraConfig& camera = hall.scenario.sensors.cameras.at("camera");
+    EXPECT_EQ(camera.width, 640);
+    EXPECT_EQ(camera.mount.pitch_deg, vehicle_of("home").camera.mount.pitch_deg);
+    EXPECT_EQ(hall.scenario.robot.drive.track_m, vehicle_of("home").robot.drive.track_m);
+    EXPECT_EQ(hall.scenario.robot.length_m, vehicle_of("home").robot.length_m);
+    for (const Mesh& mesh : hall.scene.meshes) {
+      const Material& material = hall.scene.materials[static_cast<std::size_t>(mesh.material)];
+      EXPECT_GE(material.reflectivity_850nm, 0.05f) << material.name;
+      EXPECT_LE(material.reflectivity_850nm, 0.95f) << material.name;
+    }
+  }
+}
+
+TEST(GeneratedHomes, TheSameSeedGivesTheSameBytes) {
+  const HallPlan first = planned(home(5)), second = planned(home(5)), other = planned(home(6));
+  EXPECT_TRUE(build_glb(first) == build_glb(second));
+  EXPECT_LT(build_glb(first).size(), 4u << 20);
+  EXPECT_EQ(scenario_text(first, 5), scenario_text(second, 5));
+  EXPECT_NE(scenario_text(first, 5), scenario_text(other, 5));
+}
+
+TEST(GeneratedHomes, TakeASizeButNoConveyors) {
+  GenerateConfig config = home(9);
+  config.length_m = 6.5;
+  config.width_m = 5.25;
+  const HallPlan plan = planned(config);
+  EXPECT_EQ(plan.length, 6.5);
+  EXPECT_EQ(plan.width, 5.25);
+  GenerateConfig with_conveyors = config, small = config;
+  with_conveyors.conveyors = 5;
+  EXPECT_ERROR(Generator{with_conveyors}, "conveyors 5", "home");
+  small.width_m = 2.0;
+  EXPECT_ERROR(Generator{small}, "6.5x2", "2.5x2.5");
+}
+
 // Footprints against points of a fine grid.
-TEST(PlannedConveyors, SurfaceOfACurveLiesOnIt) {
-  PlannedConveyor conveyor;
+TEST(PlannedObjects, SurfaceOfACurveLiesOnIt) {
+  PlannedObject conveyor;
   builder::CurveConveyor curve;
   curve.belt = false;
   conveyor.part = curve;

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/cuboid.h"
 #include "core/pose.h"
@@ -50,12 +52,13 @@ inline bool overlaps(const Solid& s, const Eigen::Vector3d& a_W, const Eigen::Ve
   return true;
 }
 
-// Names of the instances outside any object that reach into the solid; the floor's marks and the floor itself lie below 2 mm.
-inline std::set<std::string> background_in(const Scene& scene, const Solid& solid) {
+// Names of the instances that reach into the solid and that `counts` takes.
+template <class Counts>
+std::set<std::string> things_in(const Scene& scene, const Solid& solid, const Counts& counts) {
   std::set<std::string> names;
   const double reach = solid.half.norm();
   for (const Instance& instance : scene.instances) {
-    if (instance.object >= 0) continue;
+    if (!counts(instance)) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     Eigen::AlignedBox3f box;
     for (const Eigen::Vector3f& p_M : mesh.positions) box.extend(instance.X_WM * p_M);
@@ -73,6 +76,79 @@ inline std::set<std::string> background_in(const Scene& scene, const Solid& soli
   return names;
 }
 
+// Those outside any object; the floor's marks and the floor itself lie below 2 mm.
+inline std::set<std::string> background_in(const Scene& scene, const Solid& solid) {
+  return things_in(scene, solid, [](const Instance& instance) { return instance.object < 0; });
+}
+
+// Whether the segment from p to q passes through the triangle, by more than `depth` on both sides of its plane: what only touches, does
+// not.
+inline bool pierces(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const std::array<Eigen::Vector3d, 3>& t, double depth) {
+  const Eigen::Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  if (normal.norm() < 1e-12) return false;
+  const double before = (p - t[0]).dot(normal) / normal.norm(), after = (q - t[0]).dot(normal) / normal.norm();
+  if (std::min(before, after) > -depth || std::max(before, after) < depth) return false;
+  const Eigen::Vector3d at = p + (q - p) * before / (before - after);
+  for (std::size_t k = 0; k < 3; ++k) {
+    // By more than the rounding of the files inside each edge.
+    const Eigen::Vector3d edge = t[(k + 1) % 3] - t[k];
+    if (edge.cross(at - t[k]).dot(normal) < 1e-4 * edge.norm() * normal.norm()) return false;
+  }
+  return true;
+}
+
+// Names of the instances whose triangles pass through those of an object (an index into the scene's), or its through theirs, by more than
+// 1 mm.
+inline std::set<std::string> cuts_into(const Scene& scene, int object) {
+  using Triangle = std::array<Eigen::Vector3d, 3>;
+  Eigen::AlignedBox3d reach;
+  const auto triangles_of = [&](const Instance& instance, bool all) {
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    std::vector<Triangle> list;
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+      Triangle corners;
+      Eigen::AlignedBox3d box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = (instance.X_WM * mesh.positions[mesh.triangles[t + k]]).template cast<double>();
+        box.extend(corners[k]);
+      }
+      if (all || reach.intersects(box)) list.push_back(corners);
+    }
+    return list;
+  };
+  const auto own = [&](const Instance& instance) { return instance.object == object; };
+  std::vector<Triangle> mine;
+  for (const Instance& instance : scene.instances) {
+    if (!own(instance)) continue;
+    for (const Triangle& t : triangles_of(instance, true)) mine.push_back(t);
+  }
+  for (const Triangle& t : mine) {
+    for (const Eigen::Vector3d& p : t) reach.extend(p);
+  }
+  constexpr double kDepth = 0.001;
+  std::set<std::string> names;
+  for (const Instance& instance : scene.instances) {
+    if (own(instance)) continue;
+    const std::vector<Triangle> others = triangles_of(instance, false);
+    const bool meet = std::any_of(others.begin(), others.end(), [&](const Triangle& other) {
+      Eigen::AlignedBox3d box;
+      for (const Eigen::Vector3d& p : other) box.extend(p);
+      return std::any_of(mine.begin(), mine.end(), [&](const Triangle& t) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (std::min({t[0][axis], t[1][axis], t[2][axis]}) > box.max()[axis]) return false;
+          if (std::max({t[0][axis], t[1][axis], t[2][axis]}) < box.min()[axis]) return false;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (pierces(t[k], t[(k + 1) % 3], other, kDepth) || pierces(other[k], other[(k + 1) % 3], t, kDepth)) return true;
+        }
+        return false;
+      });
+    });
+    if (meet) names.insert(instance.name);
+  }
+  return names;
+}
+
 inline std::string joined(const std::set<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += name + " ";
@@ -81,7 +157,7 @@ inline std::string joined(const std::set<std::string>& names) {
 
 // What the vehicle would touch: its body, `margin` wider on every side, at each turn in steps of 3 deg and along each straight piece.
 inline std::set<std::string> on_the_route(const Scene& scene, const RobotConfig& robot, double margin) {
-  const double low = 0.005, high = 1.45;  // up to the camera
+  const double low = 0.02, high = 1.45;  // from what wheels roll over up to the camera
   std::set<std::string> met;
   const auto check = [&](const Eigen::Vector2d& at, double length, double yaw) {
     const Solid body{{at.x(), at.y(), 0.5 * (low + high)}, {0.5 * length + margin, 0.5 * robot.width_m + margin, 0.5 * (high - low)}, yaw};

@@ -1,4 +1,4 @@
-#include "scenes/generate/conveyor.h"
+#include "scenes/generate/planned_object.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +117,13 @@ struct Piece {
   double yaw_deg = 0.0;
 };
 
+std::vector<SurfacePatch> local_surface(const FurniturePart& f) {
+  std::vector<SurfacePatch> patches;
+  const Vector3d middle = f.extent.center(), size = f.extent.sizes();
+  add_box(patches, middle.head<2>(), size.x(), size.y(), f.extent.min().z(), f.extent.max().z(), 0, true);
+  return patches;
+}
+
 Eigen::AlignedBox3d box(double dx, double dy, double low, double high) {
   return {Vector3d(-dx / 2, -dy / 2, low), Vector3d(dx / 2, dy / 2, high)};
 }
@@ -138,7 +145,9 @@ std::vector<Piece> pieces(const CurveConveyor& c, bool deck) {
   return list;
 }
 
-std::vector<Solid> placed_pieces(const PlannedConveyor& conveyor, bool deck) {
+std::vector<Piece> pieces(const FurniturePart& f, bool) { return {{f.extent}}; }
+
+std::vector<Solid> placed_pieces(const PlannedObject& conveyor, bool deck) {
   std::vector<Solid> solids;
   for (const Piece& piece : std::visit([&](const auto& part) { return pieces(part, deck); }, conveyor.part)) {
     builder::Placement at = conveyor.at;
@@ -150,16 +159,17 @@ std::vector<Solid> placed_pieces(const PlannedConveyor& conveyor, bool deck) {
 
 }  // namespace
 
-std::string PlannedConveyor::kind() const {
+std::string PlannedObject::kind() const {
   if (const auto* table_top = std::get_if<TableTopConveyor>(&part)) return table_top->rollers ? "table-top rollers" : "table-top belt";
   if (const auto* floor = std::get_if<FloorConveyor>(&part)) return floor->rollers ? "floor rollers" : "floor belt";
+  if (const auto* furniture = std::get_if<FurniturePart>(&part)) return furniture->kind;
   return std::get<CurveConveyor>(part).belt ? "curve belt" : "curve rollers";
 }
 
-std::vector<Solid> PlannedConveyor::solids() const { return placed_pieces(*this, false); }
-std::vector<Solid> PlannedConveyor::decks() const { return placed_pieces(*this, true); }
+std::vector<Solid> PlannedObject::solids() const { return placed_pieces(*this, false); }
+std::vector<Solid> PlannedObject::decks() const { return placed_pieces(*this, true); }
 
-std::vector<SurfacePatch> PlannedConveyor::surface() const {
+std::vector<SurfacePatch> PlannedObject::surface() const {
   std::vector<SurfacePatch> patches = std::visit([](const auto& p) { return local_surface(p); }, part);
   const Eigen::Isometry3d X_WO = at.pose();
   for (SurfacePatch& patch : patches) {
@@ -169,9 +179,9 @@ std::vector<SurfacePatch> PlannedConveyor::surface() const {
   return patches;
 }
 
-Vector3d PlannedConveyor::middle() const { return at.pose() * extent_of(part).center(); }
+Vector3d PlannedObject::middle() const { return at.pose() * extent_of(part).center(); }
 
-Eigen::AlignedBox3d extent_of(const ConveyorPart& part) {
+Eigen::AlignedBox3d extent_of(const ObjectPart& part) {
   Eigen::AlignedBox3d extent;
   for (const Piece& piece : std::visit([](const auto& p) { return pieces(p, false); }, part)) {
     const Eigen::AngleAxisd R(to_radians(piece.yaw_deg), Vector3d::UnitZ());
@@ -182,25 +192,31 @@ Eigen::AlignedBox3d extent_of(const ConveyorPart& part) {
   return extent;
 }
 
-int add_conveyor(builder::Kit& kit, int parent, const PlannedConveyor& conveyor) {
+int add_planned_object(builder::Kit& kit, int parent, const PlannedObject& object) {
   struct Add {
     builder::Kit& kit;
     int parent;
-    const PlannedConveyor& conveyor;
+    const PlannedObject& object;
     int operator()(TableTopConveyor c) const {
-      c.name = conveyor.name;
-      return add_table_top_conveyor(kit, parent, conveyor.at, c);
+      c.name = object.name;
+      return add_table_top_conveyor(kit, parent, object.at, c);
     }
     int operator()(FloorConveyor c) const {
-      c.name = conveyor.name;
-      return add_floor_conveyor(kit, parent, conveyor.at, c);
+      c.name = object.name;
+      return add_floor_conveyor(kit, parent, object.at, c);
     }
     int operator()(CurveConveyor c) const {
-      c.name = conveyor.name;
-      return add_curve_conveyor(kit, parent, conveyor.at, c);
+      c.name = object.name;
+      return add_curve_conveyor(kit, parent, object.at, c);
+    }
+    int operator()(const FurniturePart& f) const {
+      const int node = kit.group(object.name, parent, object.at);
+      kit.model.set_class(node, f.class_name);
+      f.add(kit, node);
+      return node;
     }
   };
-  return std::visit(Add{kit, parent, conveyor}, conveyor.part);
+  return std::visit(Add{kit, parent, object}, object.part);
 }
 
 }  // namespace waretwin::generate
