@@ -123,7 +123,7 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
   }
   std::cout << "  " << frames << " frames, " << scans << " scans, " << readings << " odometry readings in "
             << (first ? to_seconds(last - *first) : 0.0) << " s\n  poses " << (info.has_recorded_poses ? "recorded" : "not recorded")
-            << ", up is " << info.up_W.transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
+            << ", up is " << (info.up_W + Eigen::Vector3d::Zero()).transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
   for (const std::string& remark : stream->remarks()) std::cout << "  " << remark << "\n";
 }
 

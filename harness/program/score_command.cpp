@@ -12,6 +12,7 @@
 #include "harness/score/score_json.h"
 #include "harness/score/table6.h"
 #include "harness/score/trajectory_comparison.h"
+#include "harness/score/truth_file.h"
 
 namespace waretwin {
 
@@ -60,7 +61,7 @@ ScoreConfig configured(const ScoreOptions& options) {
   return config;
 }
 
-bool is_object_list(const fs::path& path) { return fs::is_directory(path) || path.extension() == ".json"; }
+bool is_object_list(const fs::path& path) { return fs::is_directory(path) || path.extension() == ".json" || path.extension() == ".xml"; }
 
 void refuse_options_of_the_other_kind(const ScoreOptions& options, bool objects) {
   if (!objects && !options.protocol.empty()) {
@@ -75,8 +76,9 @@ void refuse_options_of_the_other_kind(const ScoreOptions& options, bool objects)
 }
 
 void score_object_lists(const ScoreOptions& options, const ScoringRules& rules) {
-  const auto mapped = read_object_list(file_or_in_folder(options.map, "cuboids.json"));
-  const auto truth = read_object_list(file_or_in_folder(options.truth, "truth.json"));
+  const fs::path map = file_or_in_folder(options.map, "cuboids.json");
+  const auto mapped = read_object_list(map);
+  const auto truth = read_truth(truth_file(options.truth), map.parent_path());
   const ComparedLists compared = compare_lists(mapped, truth, rules);
   const std::string table = table6(compared, options.map);
   std::cout << table;
@@ -113,7 +115,7 @@ int score(const ScoreOptions& options) {
   }
   if (is_object_list(options.map) != is_object_list(options.truth)) {
     throw Error(options.truth,
-                "cannot be compared with " + options.map + ": expected two object lists (.json or a run's folder) or two trajectories");
+                "cannot be compared with " + options.map + ": expected two object lists (.json, .xml or a folder) or two trajectories");
   }
   const bool objects = is_object_list(options.map);
   refuse_options_of_the_other_kind(options, objects);
@@ -137,7 +139,11 @@ Command add_score_command(CLI::App& program) {
       ->add_option("MAP", options->map,
                    "cuboids.json or a run's folder (scenenn: or a folder of runs); or a trajectory (TUM or KITTI text)")
       ->required();
-  command->add_option("--truth", options->truth, "truth.json or a run's folder; or the true trajectory")->required()->type_name("TRUTH");
+  command
+      ->add_option("--truth", options->truth,
+                   "truth.json, a SceneNN annotation (.xml), or a folder with one of them; or the true trajectory")
+      ->required()
+      ->type_name("TRUTH");
   command->add_option("--out", options->out, "folder for score.json and table6.md; scenenn: scenenn.json, scenenn.md")->type_name("DIR");
   command
       ->add_option("--protocol", options->protocol,

@@ -16,7 +16,7 @@
 #include "harness/pictures/rasteriser.h"
 #include "harness/report/frame_log.h"
 #include "harness/report/page_mesh.h"
-#include "harness/report/upright.h"
+#include "harness/score/upright.h"
 
 namespace waretwin {
 

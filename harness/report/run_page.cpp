@@ -15,7 +15,7 @@
 #include "harness/report/page_json.h"
 #include "harness/report/page_mesh.h"
 #include "harness/report/run_facts.h"
-#include "harness/report/upright.h"
+#include "harness/score/upright.h"
 #include "harness/score/table6.h"
 #include "harness/score/trajectory_file.h"
 

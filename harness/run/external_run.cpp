@@ -38,7 +38,7 @@ void check(const RunConfig& config) {
     throw Error("--mapper '" + mapper.command + "': asks for {boxes}; expected --detector truth, which makes them");
   }
   if (config.truth_stages.poses && mapper.format == "rosbag") {
-    throw Error("--poses truth: a bag has no place for the camera's true poses; expected another --format");
+    throw Error("--poses truth: format rosbag has no place for the camera's true poses; expected tum, scenenn or 7scenes");
   }
 }
 

@@ -10,9 +10,9 @@
 namespace waretwin {
 
 // `map` is a cuboids.json, a folder with one (a sequence named like the folder), or a folder of such folders; `truth` in the same way with
-// truth.json, and may be the same folder. A timing.csv beside a cuboids.json comes along. Sequences are in the order of their names.
-// Throws Error, naming the sequence, for a map without truth or a truth without map, where nothing is found, where map and truth of a
-// sequence are in different frames, and for what cannot be read.
+// truth.json or an annotation (truth_file.h), and may be the same folder. A timing.csv beside a cuboids.json comes along. Sequences are in
+// the order of their names. Throws Error, naming the sequence, for a map without truth or a truth without map, where nothing is found,
+// where map and truth of a sequence are in different frames, and for what cannot be read.
 std::vector<MappedSequence> read_sequences(const std::filesystem::path& map, const std::filesystem::path& truth);
 
 }  // namespace waretwin

@@ -143,6 +143,11 @@ TEST(Record, SceneNnFoldersHoldTheTruthAsItsAnnotation) {
   record("--frames 1 --format scenenn", drive);
   EXPECT_NE(read_file(drive / "011.xml").find("nyu_class=\"conveyor\" obbox=\""), std::string::npos);
   EXPECT_EQ(read_file(drive / "trajectory.log").substr(0, 6), "0 0 1\n");
+  // As truth it is worth as much as truth.json.
+  const auto score = test::waretwin("score " + in_quotes(drive / "truth.json") + " --truth " + in_quotes(drive / "011.xml") + " --out " +
+                                    in_quotes(folder.path() / "score"));
+  ASSERT_EQ(score.exit_code, 0) << score.err;
+  EXPECT_NEAR(Json::parse(read_file(folder.path() / "score/score.json"))["summary"]["mean_iou3d"].get<double>(), 1.0, 1e-9);
 }
 
 #ifdef WARETWIN_ROSBAG

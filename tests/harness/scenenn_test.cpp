@@ -334,6 +334,23 @@ TEST_F(SceneNnSequences, NamesWhatIsMissing) {
   expect_error("all", "nowhere", {"nowhere", "does not exist"});
 }
 
+// SceneNN's own truth is an annotation in the recording's world, in which y may point down.
+TEST_F(SceneNnSequences, TakesAnnotationsIntoTheMapsWorld) {
+  ListedObject mapped = object(1, "chair", 0, 0);
+  mapped.cuboid.centre = Eigen::Vector3d(1, 2, 0.5);
+  mapped.cuboid.size = Eigen::Vector3d(0.8, 0.6, 1.0);
+  mapped.cuboid.frame = "upright";
+  put("maps/011/cuboids.json", truth_json({mapped}));
+  // x stays, the recording's y = -z here, its z = y.
+  put("maps/011/upright.json", R"({"X_recording_upright": [[1,0,0,0],[0,0,-1,0],[0,1,0,0],[0,0,0,1]]})");
+  put("data/011/011.xml", "<annotation><label id=\"7\" nyu_class=\"chair\" obbox=\"1 -0.5 2 0.8 1 0.6 0 0 0 1\"/></annotation>");
+  const auto sequences = read_sequences(root_.path() / "maps", root_.path() / "data");
+  ASSERT_EQ(sequences.front().truth.size(), 1u);
+  EXPECT_NEAR(iou_3d(sequences.front().truth.front().cuboid, mapped.cuboid), 1.0, 1e-9);
+  put("data/011/other.xml", "<annotation/>");
+  expect_error("maps", "data", {"holds 2 .xml files"});
+}
+
 TEST_F(SceneNnSequences, RefusesTwoFrames) {
   put_pair("a");
   ListedObject upright = object(1, "chair", 0, 0);

@@ -1,8 +1,9 @@
-#include "harness/report/upright.h"
+#include "harness/score/upright.h"
+
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/files.h"
-#include "harness/report/page_json.h"
 
 namespace waretwin {
 
@@ -12,10 +13,10 @@ Pose upright_from_recording(const std::filesystem::path& folder) {
   Pose X_RU = Pose::Identity();
   if (!std::filesystem::is_regular_file(file, error)) return X_RU;
   try {
-    const Json json = Json::parse(read_file(file));
+    const auto json = nlohmann::json::parse(read_file(file));
     for (int row = 0; row < 4; ++row) {
-      const Json& values = json.at("X_recording_upright").at(static_cast<std::size_t>(row));
-      for (int column = 0; column < 4; ++column) X_RU.matrix()(row, column) = values.at(static_cast<std::size_t>(column));
+      const auto& values = json.at("X_recording_upright").at(static_cast<std::size_t>(row));
+      for (int column = 0; column < 4; ++column) X_RU.matrix()(row, column) = values.at(static_cast<std::size_t>(column)).get<double>();
     }
   } catch (const nlohmann::json::exception& problem) {
     throw Error(file, "is no pose (" + std::string(problem.what()) + ")");

@@ -1,0 +1,59 @@
+#include "harness/run/shell_command.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "tests/support/expect_error.h"
+#include "tests/support/test_data.h"
+
+namespace waretwin {
+namespace {
+
+class Shell : public ::testing::Test {
+ protected:
+  ShellResult run(const std::string& command, double timeout_s = 0.0, const std::function<void(double)>& waiting = {}) {
+    return run_shell(command, folder_.path() / "out", folder_.path() / "err", timeout_s, waiting);
+  }
+  std::string text(const char* name) const { return read_file(folder_.path() / name); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Shell, KeepsBothOutputsAndTheExitCode) {
+  const ShellResult result = run("echo to out; echo to err >&2; cat; exit 3");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_FALSE(result.timed_out);
+  EXPECT_EQ(text("out"), "to out\n") << "and its input is empty";
+  EXPECT_EQ(text("err"), "to err\n");
+  EXPECT_GT(result.peak_rss_mb, 0.1);
+  EXPECT_EQ(run("no_such_program_anywhere").exit_code, 127);
+  EXPECT_EQ(run("kill -9 $$").exit_code, 128 + 9);
+  EXPECT_ERROR(run_shell("true", folder_.path() / "none/out", folder_.path() / "err", 0.0), "none/out", "cannot be written");
+}
+
+// Its children end with it, too: one that writes on would be seen.
+TEST_F(Shell, EndsWhatTakesTooLongWithAllItsChildren) {
+  const ShellResult result = run("(sleep 1; echo late >&2) & sleep 20", 0.1);
+  EXPECT_TRUE(result.timed_out);
+  EXPECT_EQ(result.exit_code, 128 + 15);
+  EXPECT_LT(result.wall_s, 10.0);
+  EXPECT_EQ(run("sleep 1.2").exit_code, 0);
+  EXPECT_EQ(text("err"), "");
+}
+
+TEST_F(Shell, EndsItWhenTheCallerGivesUp) {
+  EXPECT_ERROR(run("sleep 20", 0.0,
+                   [](double seconds) {
+                     if (seconds > 0.05) throw Error("stopped");
+                   }),
+               "stopped");
+}
+
+TEST_F(Shell, WordsComeThroughWhole) {
+  const std::string word = "it's \"a\" $path; `x` \\ * end";
+  EXPECT_EQ(run("printf %s " + shell_word(word)).exit_code, 0);
+  EXPECT_EQ(text("out"), word);
+}
+
+}  // namespace
+}  // namespace waretwin
