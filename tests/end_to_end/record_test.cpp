@@ -41,7 +41,10 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   const TemporaryFolder folder;
   const fs::path drive = folder.path() / "drive", boxes = folder.path() / "boxes.json";
   // One frame a second, so that the drive is long enough to see a conveyor.
-  const std::string options = "--frames 8 --seed 5 --set sensors.cameras.camera.rate_hz=1 ";
+  const std::string small =
+      "--seed 5 --set sensors.cameras.camera.rate_hz=1 --set sensors.cameras.camera.width=640 --set "
+      "sensors.cameras.camera.height=360 ";
+  const std::string options = "--frames 8 " + small;
   record(options, drive);
   for (const char* name :
        {"rgb/000007.png", "depth/000007.png", "depth_native/000007.png", "rgb.txt", "depth.txt", "depth_native.txt", "laser.txt",
@@ -53,7 +56,7 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   Json frames = Json::array();
   for (int i = 0; i < 8; ++i) {
     frames.push_back(
-        {{"stamp", i * 1'000'000'000LL}, {"detections", {{{"class", "conveyor"}, {"box", {400, 100, 500, 400}}, {"score", 0.9}}}}});
+        {{"stamp", i * 1'000'000'000LL}, {"detections", {{{"class", "conveyor"}, {"box", {200, 50, 250, 200}}, {"score", 0.9}}}}});
   }
   write_file(boxes, Json{{"frames", frames}}.dump());
   for (const std::string mapping : {"--profile paper --detector none", "--profile best --detector none --rate 1"}) {
@@ -79,8 +82,7 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   }
   // With boxes and with fewer frames than there are.
   const std::string mapping = "--profile paper --frames 6 --detector " + in_quotes(boxes);
-  const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "run") +
-                                  " --seed 5 --set sensors.cameras.camera.rate_hz=1 " + mapping);
+  const auto run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "run") + " " + small + mapping);
   const auto map = test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "map") + " " + mapping);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   ASSERT_EQ(map.exit_code, 0) << map.err;
@@ -89,7 +91,7 @@ TEST(Record, MappedGivesTheDigestOfARun) {
   EXPECT_FALSE(Json::parse(read_file(folder.path() / "map/cuboids.json"))["objects"].empty()) << "a box must have become an object";
 
   // The true boxes stand beside the recording: with them it maps as a run with the true detector does.
-  const std::string short_run = " --profile paper --frames 8 --seed 5 --set sensors.cameras.camera.rate_hz=1 --detector truth";
+  const std::string short_run = " --profile paper --detector truth " + options;
   const auto true_run = test::waretwin("run " + agiprobot() + " --quiet --out " + in_quotes(folder.path() / "true_run") + short_run);
   const auto true_map = test::waretwin("map " + in_quotes(drive) + " --quiet --out " + in_quotes(folder.path() / "true_map") +
                                        " --profile paper --detector " + in_quotes(drive / "truth_boxes.json"));
@@ -124,7 +126,11 @@ TEST(Record, GivesTheSameMapInEveryFormat) {
   std::set<std::string> by_laser, by_poses;
   for (const std::string& format : formats) {
     const fs::path drive = folder.path() / format;
-    record("--frames 3 --set sensors.cameras.camera.rate_hz=1 --format " + format, drive);
+    record(
+        "--frames 3 --set sensors.cameras.camera.rate_hz=1 --set sensors.cameras.camera.width=640 --set sensors.cameras.camera.height=360 "
+        "--format " +
+            format,
+        drive);
     by_laser.insert(mapped_digest(drive, "--profile best"));
     if (format == "scenenn" || format == "7scenes") by_poses.insert(mapped_digest(drive, "--profile best --poses recorded"));
     // An earlier recording of any format is replaced by one of any other.
@@ -215,14 +221,16 @@ TEST(Record, IsTheSameAtAnyNumberOfThreadsAndMapsWithoutItsTruth) {
 TEST(Record, MapsAsTheRunWithTheVehicleInView) {
   const TemporaryFolder folder;
   const std::string vehicle =
-      "--frames 6 --set robot.model=vehicle.glb --set sensors.cameras.camera.rate_hz=2 --set "
+      "--frames 6 --set robot.model=vehicle.glb --set sensors.cameras.camera.rate_hz=2 --set sensors.cameras.camera.width=640 --set "
+      "sensors.cameras.camera.height=360 --set "
       "sensors.cameras.camera.mount.bracket.angle_sigma_deg=0.3";
   record(vehicle, folder.path() / "drive");
   const std::string map = " --quiet --detector none --out ";
   const auto mapped = test::waretwin("map " + in_quotes(folder.path() / "drive") + map + in_quotes(folder.path() / "map"));
   const auto run = test::waretwin("run " + agiprobot() + map + in_quotes(folder.path() / "run") + " " + vehicle);
-  const auto without =
-      test::waretwin("run " + agiprobot() + map + in_quotes(folder.path() / "bare") + " --frames 6 --set sensors.cameras.camera.rate_hz=2");
+  const auto without = test::waretwin(
+      "run " + agiprobot() + map + in_quotes(folder.path() / "bare") +
+      " --frames 6 --set sensors.cameras.camera.rate_hz=2 --set sensors.cameras.camera.width=640 --set sensors.cameras.camera.height=360");
   EXPECT_EQ(digest_in(mapped.out), digest_in(run.out)) << mapped.err << run.err;
   EXPECT_NE(digest_in(run.out), digest_in(without.out));
   EXPECT_NE(read_file(folder.path() / "drive/recording.yaml").find("own_body: [-0.4"), std::string::npos);

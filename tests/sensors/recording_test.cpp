@@ -410,13 +410,13 @@ TEST_F(FrameFolder, DepthInFloatMetresAndWithOtherInvalidValues) {
 TEST(RecordingConfig, ChecksItsDirections) {
   RecordingConfig config;
   EXPECT_ERROR(read_config_text("up: [0, 0]", "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", "'up' is not a direction");
-  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{{"start: [1, 2]", "expected x_m, y_m, yaw_deg"},
-                                                                                   {"camera_mount: [1]", "pitch_deg"},
-                                                                                   {"rotate_deg: 45", "expected 0, 90, 180 or 270"},
-                                                                                   {"clock: {laser_s: x}", "laser_s"},
-                                                                                   {"bag: {preset: turtlebot}", "agiprobot"}}) {
+  for (const auto& wrong : std::vector<std::pair<std::string, std::string>>{{"start: [1, 2]", "expected x_m, y_m, yaw_deg"},
+                                                                            {"camera_mount: [1]", "pitch_deg"},
+                                                                            {"rotate_deg: 45", "expected 0, 90, 180 or 270"},
+                                                                            {"clock: {laser_s: x}", "laser_s"},
+                                                                            {"bag: {preset: turtlebot}", "agiprobot"}}) {
     config = {};
-    EXPECT_ERROR(read_config_text(text, "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", part);
+    EXPECT_ERROR(read_config_text(wrong.first, "c.yaml", [&](Fields& f) { config.visit(f); }), "c.yaml:1:", wrong.second);
   }
   config = {};
   read_config_text("bag: {preset: agiprobot, depth_topic: /mine}", "c.yaml", [&](Fields& f) { config.visit(f); });
