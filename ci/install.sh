@@ -12,6 +12,7 @@ packages=(
   libtbb-dev libyaml-cpp-dev nlohmann-json3-dev libcli11-dev libspdlog-dev librandom123-dev
   libgtest-dev libbenchmark-dev zlib1g-dev libssl-dev
   liboctomap-dev  # optional: without it no octomap.bt is written
+  libceres-dev    # optional: without it no camera is calibrated
   libtorch-dev    # optional: without it no detector is trained
   darknet         # optional: tests hold trained detectors against it
   chromium        # optional: tests use the report page in it

@@ -52,7 +52,8 @@ RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
                                  .association = options.association,
                                  .rate_hz = mapping.rate_hz,
                                  .frames = mapping.frames,
-                                 .resume = mapping.resume});
+                                 .resume = mapping.resume,
+                                 .extrinsics = mapping.extrinsics});
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
   for (Setting& setting : given) settings.push_back(std::move(setting));
@@ -192,8 +193,8 @@ Command add_run_command(CLI::App& program) {
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->suite.add_to(*command);
   // Each run of a suite has its own.
-  for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--config", "--poses", "--depth",
-                          "--association", "--budget", "--baseline"})
+  for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--extrinsics", "--config", "--poses",
+                          "--depth", "--association", "--budget", "--baseline"})
     command->get_option("--suite")->excludes(own);
   options->common.add_to(*command);
   command->footer(

@@ -37,6 +37,7 @@ void RunConfig::visit(Fields& f) {
   f.group("extras", extras, "what is measured beside the map");
   f.group("output", output, "files that are written where they can be");
   f("resume", resume, "the map.waretwin to go on from; empty: a new map");
+  f("extrinsics", extrinsics, "a calibration that says where the mapper takes the camera to sit; empty: where its bracket is drawn");
 }
 
 RunConfig load_run_config(const fs::path& scenario, RunConfig base, const fs::path& config, const std::vector<Setting>& settings) {

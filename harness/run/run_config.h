@@ -47,7 +47,8 @@ struct RunConfig {
   ScoringRules score;
   RunExtras extras;
   OutputConfig output;
-  std::string resume;  // the map.waretwin to go on from; empty: a new map
+  std::string resume;      // the map.waretwin to go on from; empty: a new map
+  std::string extrinsics;  // of `calibrate`: where the mapper takes the camera to sit; empty: where its bracket is drawn
 
   void visit(Fields& f);
 };
