@@ -26,4 +26,9 @@ struct CheckerBoard {
 // whose first corner lies more to the upper left. Nothing where the picture (BGR) does not show the whole board.
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const cv::Mat& picture, const CheckerBoard& board);
 
+// The same for a board that should still stand where `before` saw it, in its order: quick, and sees a board that find_corners misses for a
+// little noise. Nothing where a corner is more than `within_px` away, or there is no checkerboard between them.
+std::optional<std::vector<Eigen::Vector2d>> find_corners_again(const cv::Mat& picture, const CheckerBoard& board,
+                                                               const std::vector<Eigen::Vector2d>& before, double within_px);
+
 }  // namespace waretwin

@@ -21,40 +21,48 @@ void StillConfig::visit(Fields& f) {
 
 bool StillPoses::stands_with(const std::vector<Eigen::Vector2d>& corners) const {
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if ((corners[i] - now_.last[i]).norm() > config_.still_px || (corners[i] - now_.mean(i)).norm() > config_.still_px) return false;
+    if ((corners[i] - newest_[i]).norm() > config_.still_px) return false;
+    if (now_.frames > 0 && (corners[i] - now_.mean(i)).norm() > config_.still_px) return false;
   }
   return true;
 }
 
 void StillPoses::add(const RgbdFrame& frame) {
   ++frames_;
-  const std::optional<std::vector<Eigen::Vector2d>> corners = find_corners(frame.colour, board_);
+  std::optional<std::vector<Eigen::Vector2d>> corners;
+  if (in_sight_ > 0) corners = find_corners_again(frame.colour, board_, newest_, config_.still_px);
+  if (!corners) corners = find_corners(frame.colour, board_);
   if (corners) ++frames_with_board_;
-  if (now_.frames > 0 && corners && stands_with(*corners)) {
-    take_scans(frame.stamp);
-  } else {
+  if (in_sight_ == 0 || !corners || !stands_with(*corners)) {
     close();
     std::erase_if(since_, [&](const LaserScan& scan) { return scan.stamp < frame.stamp; });
     if (!corners) return;
-    now_.begin = frame.stamp;
-    now_.corners.assign(corners->size(), Eigen::Vector2d::Zero());
+  } else if (in_sight_ > 1) {
+    // The newest so far has one like it before and after.
+    if (now_.frames == 0) {
+      now_.begin = newest_stamp_;
+      now_.corners.assign(newest_.size(), Eigen::Vector2d::Zero());
+    }
+    for (std::size_t i = 0; i < newest_.size(); ++i) now_.corners[i] += newest_[i];
+    ++now_.frames;
+    now_.end = newest_stamp_;
+    take_scans();
   }
-  for (std::size_t i = 0; i < corners->size(); ++i) now_.corners[i] += (*corners)[i];
-  now_.last = *corners;
-  now_.end = frame.stamp;
-  ++now_.frames;
+  ++in_sight_;
+  newest_ = std::move(*corners);
+  newest_stamp_ = frame.stamp;
 }
 
 void StillPoses::add(const LaserScan& scan) {
   // Without a board in sight only those count that a frame of the same instant may still claim.
-  if (now_.frames == 0) std::erase_if(since_, [&](const LaserScan& old) { return old.stamp < scan.stamp; });
+  if (in_sight_ == 0) std::erase_if(since_, [&](const LaserScan& old) { return old.stamp < scan.stamp; });
   since_.push_back(scan);
 }
 
 // Scans are still only between two frames that are.
-void StillPoses::take_scans(Stamp until) {
+void StillPoses::take_scans() {
   for (const LaserScan& scan : since_) {
-    if (scan.stamp < now_.begin || end_of(scan) > until) continue;
+    if (scan.stamp < now_.begin || end_of(scan) > now_.end) continue;
     const std::size_t beams = scan.ranges.size();
     if (now_.scans == 0) {
       now_.ranges.assign(beams, 0.0);
@@ -73,12 +81,13 @@ void StillPoses::take_scans(Stamp until) {
       ++now_.readings[i];
     }
   }
-  std::erase_if(since_, [&](const LaserScan& scan) { return end_of(scan) <= until; });
+  std::erase_if(since_, [&](const LaserScan& scan) { return end_of(scan) <= now_.end; });
 }
 
 void StillPoses::close() {
   Sums ended = std::move(now_);
   now_ = {};
+  in_sight_ = 0;
   if (ended.frames < config_.frames || ended.scans < config_.scans) return;
   for (Sums& earlier : done_) {
     bool same = earlier.ranges.size() == ended.ranges.size();

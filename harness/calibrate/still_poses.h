@@ -13,7 +13,7 @@ namespace waretwin {
 
 struct StillConfig {
   double still_px = 0.5;  // no corner moves more than this from frame to frame or away from the mean
-  int frames = 3;         // at least
+  int frames = 3;         // at least, beside the first and the last
   int scans = 10;         // at least
   void visit(Fields& f);
 };
@@ -33,8 +33,9 @@ struct StillPose {
   std::vector<BeamMean> beams;           // all of a scan
 };
 
-// Takes the events of one camera and one laser in order of stamps. A board that was lost from sight for a moment and found in the same
-// place is one pose.
+// Takes the events of one camera and one laser in order of stamps. The first and the last frame of a pose only say that the board stood
+// still in between: in them it may be about to arrive or to leave, by less than shows. A board that was lost from sight for a moment and
+// found in the same place is one pose.
 class StillPoses {
  public:
   StillPoses(const CheckerBoard& board, const StillConfig& config) : board_(board), config_(config) {}
@@ -51,19 +52,22 @@ class StillPoses {
   struct Sums {
     Stamp begin = 0, end = 0;
     int frames = 0, scans = 0;
-    std::vector<Eigen::Vector2d> corners, last;  // sum; of the newest frame
+    std::vector<Eigen::Vector2d> corners;  // sum
     std::vector<double> angles, ranges, squares;
     std::vector<int> readings;
     Eigen::Vector2d mean(std::size_t corner) const { return corners[corner] / frames; }
   };
   bool stands_with(const std::vector<Eigen::Vector2d>& corners) const;
-  void take_scans(Stamp until);
+  void take_scans();
   void close();
 
   CheckerBoard board_;
   StillConfig config_;
-  Sums now_;                      // frames == 0: no board in sight
-  std::vector<LaserScan> since_;  // scans that began since the newest frame, or a little before
+  Sums now_;                             // of the board in sight
+  int in_sight_ = 0;                     // frames of it; 0: no board
+  std::vector<Eigen::Vector2d> newest_;  // the newest frame's corners, which are not in the sums yet
+  Stamp newest_stamp_ = 0;
+  std::vector<LaserScan> since_;  // scans that are not in the sums yet and may still be
   std::vector<Sums> done_;
   int frames_ = 0, frames_with_board_ = 0;
 };
