@@ -22,6 +22,8 @@ std::string chosen(const std::map<std::string, T>& sensors, const std::string& n
   return name.empty() ? sensors.begin()->first : name;
 }
 
+constexpr const char* kNoBoard = "the corners fit no board";
+
 struct Views {
   std::vector<StillPose> still;
   std::vector<BoardView> views;     // of each
@@ -30,12 +32,20 @@ struct Views {
 
 Views seen_boards(const std::vector<StillPose>& still, const Intrinsics& intrinsics, const CalibrateConfig& config) {
   Views seen;
+  std::vector<double> misfits;
   for (const StillPose& pose : still) {
     const std::optional<BoardView> view = view_board(pose.corners, intrinsics, config.board);
     seen.still.push_back(pose);
     seen.views.push_back(view.value_or(BoardView{}));
-    const bool fits = view && view->rms_px <= config.largest_corner_px;
-    seen.unused.push_back(fits ? "" : "the corners fit no board");
+    seen.unused.push_back(view ? "" : kNoBoard);
+    if (view) misfits.push_back(view->rms_px);
+  }
+  if (misfits.empty()) return seen;
+  // Corners that went astray in one pose stick out long before they look wrong.
+  constexpr double kFarWorse = 4.0, kGood_px = 0.2;
+  const double most = std::min(config.largest_corner_px, std::max(kGood_px, kFarWorse * median(misfits)));
+  for (std::size_t i = 0; i < still.size(); ++i) {
+    if (seen.unused[i].empty() && seen.views[i].rms_px > most) seen.unused[i] = kNoBoard;
   }
   return seen;
 }
@@ -203,7 +213,7 @@ Calibration calibrate(const std::vector<StillPose>& still, const StreamInfo& inf
                             .point_rms_m = beam_rms(view, found.X_CO[i], found.X_BC.inverse() * X_BL, found.bias_m),
                             .unused = seen.unused[i]});
     result.used_poses += seen.unused[i].empty() ? 1 : 0;
-    if (seen.unused[i] != "the corners fit no board") corners.push_back(view.corners);
+    if (seen.unused[i] != kNoBoard) corners.push_back(view.corners);
   }
   if (config.lens.estimate) result.lens = estimate_lens(corners, config.board, result.given, config.lens);
   return result;

@@ -174,8 +174,8 @@ class Problem {
   // At the parameters as they are.
   Eigen::Matrix<double, 7, 7> covariance() {
     ceres::Covariance::Options options;
-    options.algorithm_type = ceres::DENSE_SVD;
-    options.min_reciprocal_condition_number = 1e-16;
+    options.algorithm_type = ceres::SPARSE_QR;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.num_threads = 1;
     ceres::Covariance estimate(options);
     std::vector<std::pair<const double*, const double*>> blocks = {{camera_.data(), camera_.data()}};
