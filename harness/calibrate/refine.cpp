@@ -153,8 +153,8 @@ class Problem {
 
   Refined solve() {
     ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.num_threads = 1;  // same input, same bytes
+    options.linear_solver_type = ceres::DENSE_SCHUR;  // boards meet in the camera alone
+    options.num_threads = 1;                          // same input, same bytes
     options.max_num_iterations = 100;
     options.function_tolerance = 1e-14;
     options.parameter_tolerance = 1e-12;
