@@ -104,13 +104,14 @@ TEST_F(CalibrateTest, RefusesBadInputInOneLine) {
 
 // True boxes, poses, depth and association: nothing but the camera's place is wrong.
 Json mapped(const std::string& options, const fs::path& out) {
-  const auto result = test::waretwin(
-      "run " + agiprobot() +
-      " --quiet --profile paper --detector truth --poses truth --depth truth --association truth"
-      " --frames 8 --set sensors.cameras.camera.rate_hz=1 --set robot.drive.model=exact --set sensors.cameras.camera.width=480 --set "
-      "sensors.cameras.camera.height=270 --set simulation.colour=false --set extras.pictures=false"
-      " --set extras.visible_share=false --set extras.surface=false --out " +
-      in_quotes(out) + options);
+  std::string command =
+      "run " + agiprobot() + " --quiet --profile paper --detector truth --poses truth --depth truth --association truth --frames 6";
+  for (const char* quick : {"sensors.cameras.camera.rate_hz=1", "sensors.cameras.camera.width=480", "sensors.cameras.camera.height=270",
+                            "simulation.colour=false", "robot.drive.model=exact", "mapper.integrate.voxel_m=0.06", "extras.pictures=false",
+                            "extras.depth=false", "extras.surface=false", "extras.visible_share=false", "truth_frames.enabled=false"}) {
+    command += std::string(" --set ") + quick;
+  }
+  const auto result = test::waretwin(command + " --out " + in_quotes(out) + options);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.exit_code == 0 ? Json::parse(read_file(out / "cuboids.json"))["objects"] : Json();
 }
