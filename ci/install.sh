@@ -14,6 +14,7 @@ packages=(
   liboctomap-dev  # optional: without it no octomap.bt is written
   # optional: without them no ROS bags are read or written; python3-rosbag is for the test that holds ours against ROS's own reader
   librosbag-storage-dev libsensor-msgs-dev libnav-msgs-dev libtf2-msgs-dev libtf2-dev python3-rosbag
+  libceres-dev    # optional: without it no camera is calibrated
   libtorch-dev    # optional: without it no detector is trained
   darknet         # optional: tests hold trained detectors against it
   chromium        # optional: tests use the report page in it

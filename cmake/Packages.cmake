@@ -109,6 +109,17 @@ else()
   message(STATUS "ROS 1 libraries not found: bags are neither read nor written (librosbag-storage-dev, libtf2-dev, libnav-msgs-dev)")
 endif()
 
+# For calibrate, where it is installed (libceres-dev).
+find_package(Ceres 2.1 QUIET)
+if(TARGET Ceres::ceres)
+  add_library(waretwin_ceres INTERFACE)
+  add_library(waretwin::ceres ALIAS waretwin_ceres)
+  target_link_libraries(waretwin_ceres INTERFACE Ceres::ceres)
+  target_compile_definitions(waretwin_ceres INTERFACE WARETWIN_CERES)
+else()
+  message(STATUS "Ceres not found: waretwin calibrate is left out (libceres-dev)")
+endif()
+
 # For training detectors, where it is installed (libtorch-dev). Its configuration speaks of static libraries that Debian does not ship.
 set(CMAKE_MESSAGE_LOG_LEVEL ERROR)
 find_package(Torch QUIET)

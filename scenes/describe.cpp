@@ -96,6 +96,10 @@ void add_motion(std::string& text, const MotionConfig& motion) {
     add_line(text, "  %.80s: %.200s, %zu places, at most %.3g m/s", shown(walker.name), walker.file.c_str(), walker.path.size(),
              walker.speed_mps);
   });
+  add_list(text, "held", motion.held, [&](const HeldConfig& thing) {
+    add_line(text, "  %.80s: %.200s in %zu places, %.4g s in each", shown(thing.name), thing.file.c_str(), thing.places.size(),
+             thing.hold_s);
+  });
 }
 
 }  // namespace

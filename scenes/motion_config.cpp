@@ -85,10 +85,37 @@ void WalkerConfig::visit(Fields& f) {
   if (path.empty()) f.reject("path", "has no place; expected at least one");
 }
 
+Pose HeldPlace::X_WG() const {
+  Pose X = Pose::Identity();
+  X.linear() = rotation_from_rpy(to_radians(roll_deg), to_radians(-tilt_deg), to_radians(yaw_deg));
+  X.translation() = Eigen::Vector3d(x_m, y_m, z_m);
+  return X;
+}
+
+void HeldPlace::visit(Fields& f) {
+  f("x_m", x_m, "place of the model's origin in the world", {.min = -kFar_m, .max = kFar_m, .required = true});
+  f("y_m", y_m, "place of the model's origin in the world", {.min = -kFar_m, .max = kFar_m, .required = true});
+  f("z_m", z_m, "height of the model's origin above the floor", {.min = -kHigh_m, .max = kHigh_m, .required = true});
+  f("yaw_deg", yaw_deg, "world direction of the model's x axis", {.min = -360, .max = 360});
+  f("tilt_deg", tilt_deg, "leans back: the x axis points up by this much", {.min = -90, .max = 90});
+  f("roll_deg", roll_deg, "turned about the x axis", {.min = -180, .max = 180});
+}
+
+void HeldConfig::visit(Fields& f) {
+  f("name", name, "for messages; the file's stem where empty");
+  visit_model_file(f, file, folder);
+  visit_optional_model(f, "stand", stand, folder, "glTF file of what holds it, upright, with the same origin; empty: none");
+  f("hold_s", hold_s, "time in each place", {.min = 0, .max = 3600});
+  f("move_s", move_s, "time from one place to the next", {.min = 0.01, .max = 3600});
+  f.list("places", places, "in order", {.required = true});
+  if (places.empty()) f.reject("places", "has no place; expected at least one");
+}
+
 void MotionConfig::set_folder(const std::filesystem::path& folder) {
   for (ItemStream& stream : streams) stream.body.folder = folder;
   for (ClutterConfig& thing : clutter) thing.body.folder = folder;
   for (WalkerConfig& walker : walkers) walker.folder = folder;
+  for (HeldConfig& thing : held) thing.folder = folder;
 }
 
 void MotionConfig::visit(Fields& f) {
@@ -99,6 +126,7 @@ void MotionConfig::visit(Fields& f) {
   f.list("sinks", sinks, "where they leave");
   f.list("clutter", clutter, "things dropped before the drive");
   f.list("walkers", walkers, "people and vehicles on their ways");
+  f.list("held", held, "things that are held still in one place after the other");
 }
 
 }  // namespace waretwin

@@ -1,5 +1,5 @@
-// What moves in a hall beside the robot: belts and what they carry, clutter that was dropped, people and vehicles on their ways. Keys of a
-// scenario under `motion`. sim/motion/ moves it; this room only says what there is.
+// What moves in a hall beside the robot: belts and what they carry, clutter that was dropped, people and vehicles on their ways, boards
+// that are held up. Keys of a scenario under `motion`. sim/motion/ moves it; this room only says what there is.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/fields.h"
+#include "core/pose.h"
 #include "scenes/waypoint.h"
 
 namespace waretwin {
@@ -89,6 +90,28 @@ struct WalkerConfig {
   void visit(Fields& f);
 };
 
+// How a held thing is turned where it is shown.
+struct HeldPlace {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  // of the model's origin
+  double yaw_deg = 0.0;                    // world direction of the model's x axis
+  double tilt_deg = 0.0;                   // then backwards, so that the x axis points up by this much
+  double roll_deg = 0.0;                   // then about its x axis
+  Pose X_WG() const;                       // R = Rz(yaw) * Ry(-tilt) * Rx(roll)
+  void visit(Fields& f);
+};
+
+// Something that is set up in one place after the other and held still in each: a calibration board. It is carried evenly from place to
+// place, stays in the last one, and stands in nobody's way.
+struct HeldConfig {
+  std::string name;
+  std::filesystem::path file;    // origin where it is held
+  std::filesystem::path stand;   // what holds it, with the same origin: goes along upright, turned by yaw alone; empty: none
+  std::filesystem::path folder;  // of the scenario; see ItemBody
+  double hold_s = 2.0, move_s = 0.5;
+  std::vector<HeldPlace> places;
+  void visit(Fields& f);
+};
+
 struct MotionConfig {
   double step_hz = 240.0;  // physics steps a second
   double settle_s = 2.0;   // simulated before the drive, so that clutter lies still
@@ -97,8 +120,9 @@ struct MotionConfig {
   std::vector<ItemSink> sinks;
   std::vector<ClutterConfig> clutter;
   std::vector<WalkerConfig> walkers;
+  std::vector<HeldConfig> held;
 
-  bool empty() const { return belts.empty() && streams.empty() && clutter.empty() && walkers.empty(); }
+  bool empty() const { return belts.empty() && streams.empty() && clutter.empty() && walkers.empty() && held.empty(); }
   // All files are looked for here; see ItemBody::folder.
   void set_folder(const std::filesystem::path& folder);
   void visit(Fields& f);

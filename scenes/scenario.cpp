@@ -149,6 +149,10 @@ Scene build_scene(const Scenario& scenario) {
   for (const ItemStream& stream : scenario.motion.streams) add_movers(stream.body.file, stream.name, stream.most);
   for (const ClutterConfig& thing : scenario.motion.clutter) add_movers(thing.body.file, thing.name, thing.count);
   for (const WalkerConfig& walker : scenario.motion.walkers) add_movers(walker.file, walker.name, 1);
+  for (const HeldConfig& thing : scenario.motion.held) {
+    add_movers(thing.file, thing.name, 1);
+    if (!thing.stand.empty()) add_movers(thing.stand, "", 1);
+  }
   if (!scenario.robot.model.empty()) builder.add_vehicle(model_of(scenario.robot.model));
   for (std::size_t i = 0; i < scenario.truth.size(); ++i) {
     if (builder.matched()[i] > 0) continue;

@@ -106,8 +106,8 @@ struct Scene {
   Eigen::Vector3f ambient = Eigen::Vector3f::Constant(0.0f);     // radiance from all directions that no surface blocks
   Eigen::Vector3f background = Eigen::Vector3f::Constant(0.0f);  // radiance of rays that hit nothing
   std::vector<TrueObject> objects;
-  std::vector<int> vehicle;        // instances of the robot's own model, in its frame B; not there until the simulation places them
-  std::vector<Mover> movers;       // of the scenario's motion: streams' items, then clutter, then walkers, each in its order
+  std::vector<int> vehicle;   // instances of the robot's own model, in its frame B; not there until the simulation places them
+  std::vector<Mover> movers;  // of the scenario's motion: streams' items, clutter, walkers, held things (each before its stand), in order
   std::vector<std::string> notes;  // what the loader read over or replaced, one line each
 
   // Of each instance: whether it is elsewhere at another time (movers and the vehicle).

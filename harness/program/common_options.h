@@ -49,5 +49,6 @@ Command add_train_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
 Command add_study_command(CLI::App& program);
 Command add_report_command(CLI::App& program);
+Command add_calibrate_command(CLI::App& program);
 
 }  // namespace waretwin

@@ -43,15 +43,16 @@ int run(int argc, char** argv) {
       "  waretwin dataset --generate cell --out data/conveyors --count 1000\n"
       "  waretwin train data/conveyors --out out/detector\n"
       "  waretwin detect out/detector photo.jpg --out out/boxes\n"
+      "  waretwin calibrate scenes/agiprobot/calibration.yaml --out extrinsics.yaml\n"
       "  waretwin report out/agiprobot --video out/drive.mp4\n\n"
       "`waretwin COMMAND --help` explains a command. Results go to files and stdout, the log to stderr.\n"
       "Exit codes: 0 success, 1 a gate failed, 2 bad input (one line says what), 3 a fault of the program.");
   const std::vector<waretwin::Command> commands = {
-      waretwin::add_run_command(program),      waretwin::add_map_command(program),     waretwin::add_record_command(program),
-      waretwin::add_score_command(program),    waretwin::add_render_command(program),  waretwin::add_inspect_command(program),
-      waretwin::add_generate_command(program), waretwin::add_dataset_command(program), waretwin::add_train_command(program),
-      waretwin::add_detect_command(program),   waretwin::add_compare_command(program), waretwin::add_study_command(program),
-      waretwin::add_report_command(program)};
+      waretwin::add_run_command(program),      waretwin::add_map_command(program),      waretwin::add_record_command(program),
+      waretwin::add_score_command(program),    waretwin::add_render_command(program),   waretwin::add_inspect_command(program),
+      waretwin::add_generate_command(program), waretwin::add_dataset_command(program),  waretwin::add_train_command(program),
+      waretwin::add_detect_command(program),   waretwin::add_compare_command(program),  waretwin::add_study_command(program),
+      waretwin::add_report_command(program),   waretwin::add_calibrate_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
@@ -60,10 +61,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const auto named = [&](const waretwin::Command& command) { return command.app->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && std::none_of(commands.begin(), commands.end(), named)) {
-      return fail(
-          kBadInput,
-          "command '" + std::string(argv[1]) +
-              "' is not known; expected run, map, record, score, compare, render, inspect, generate, dataset, train, detect or report");
+      return fail(kBadInput, "command '" + std::string(argv[1]) +
+                                 "' is not known; expected run, map, record, score, compare, render, inspect, generate, dataset, train, "
+                                 "detect, calibrate or report");
     }
     return fail(kBadInput, std::string(error.what()) + " (--help shows what is known)");
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "harness/calibrate/extrinsics.h"
 #include "harness/program/common_options.h"
 #include "harness/program/mapping_options.h"
 #include "harness/program/progress.h"
@@ -35,6 +36,7 @@ int map(const MapOptions& options) {
   if (!options.poses.empty()) config.mapper.poses = options.poses;
   config.frames = options.mapping.frames;
   config.resume = options.mapping.resume;
+  config.extrinsics = options.mapping.extrinsics;
   // Other people's worlds have their zero anywhere, often at the first camera; our own recordings have it on the floor.
   const std::filesystem::path recording = options.recording;
   const auto folder_of_it = is_recording_file(recording) ? recording.parent_path() : recording;
@@ -45,7 +47,8 @@ int map(const MapOptions& options) {
   apply_settings(options.common.settings(), [&](Fields& f) { config.visit(f); });
 
   const auto stream = open_recording(options.recording, config.recording);
-  Stages stages = make_stages(config.mapper, stream->info());
+  ToldStream told(*stream, told_by_extrinsics(stream->info(), config.extrinsics));
+  Stages stages = make_stages(config.mapper, told.info());
   // Before the folder is made: the map may be the one that is there.
   std::optional<LoadedMap> resumed = load_resumed(config.resume, config.mapper.integrate);
   RunFolder folder(options.out);
@@ -60,7 +63,7 @@ int map(const MapOptions& options) {
     hooks.progress = [&](double done, const ObjectMap& map) {
       progress.update(done, std::to_string(map.frames.size()) + " frames mapped, " + std::to_string(map.objects.size()) + " objects");
     };
-    result = map_stream(*stream, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
+    result = map_stream(told, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
   }
   for (const std::string& remark : stream->remarks()) spdlog::info("{}", remark);
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());

@@ -23,13 +23,17 @@ void MappingOptions::add_to(CLI::App& command, const std::string& detector_help)
   command
       .add_option("--resume", resume, "an earlier run's map.waretwin, to go on from: objects keep their ids; poses must be in its world")
       ->type_name("MAP");
+  command
+      .add_option("--extrinsics", extrinsics,
+                  "a calibration (waretwin calibrate): the mapper takes the camera to sit where it says; nothing else changes")
+      ->type_name("FILE");
   CLI::Option* from_file =
       command
           .add_option("--config", config_file,
                       "an earlier run's config.yaml, or a part of one: repeats it; --seed and --set still change single values")
           ->type_name("FILE");
   // The file settles what these would.
-  for (const char* settled : {"--profile", "--detector", "--rate", "--frames", "--resume"}) from_file->excludes(settled);
+  for (const char* settled : {"--profile", "--detector", "--rate", "--frames", "--resume", "--extrinsics"}) from_file->excludes(settled);
 }
 
 }  // namespace waretwin

@@ -13,6 +13,7 @@ struct MappingOptions {
   std::optional<double> rate_hz;
   int frames = 0;
   std::string resume;
+  std::string extrinsics;
   std::string config_file;
 
   void add_to(CLI::App& command, const std::string& detector_help);

@@ -57,7 +57,8 @@ RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
                                  .association = options.association,
                                  .rate_hz = mapping.rate_hz,
                                  .frames = mapping.frames,
-                                 .resume = mapping.resume});
+                                 .resume = mapping.resume,
+                                 .extrinsics = mapping.extrinsics});
   if (!options.mapper.empty()) config.external_mapper.command = options.mapper;
   if (!options.format.empty()) config.external_mapper.format = options.format;
   if (options.mapper_timeout_s) config.external_mapper.timeout_s = *options.mapper_timeout_s;
@@ -269,7 +270,7 @@ Command add_run_command(CLI::App& program) {
       ->check(CLI::IsMember(recording_formats()))
       ->needs(own_mapper);
   command->add_flag("--keep-recording", options->keep_recording, "leaves the recording in DIR/mapper/recording")->needs(own_mapper);
-  for (const char* ours : {"--profile", "--resume", "--association", "--budget", "--config"})
+  for (const char* ours : {"--profile", "--resume", "--association", "--budget", "--extrinsics", "--config"})
     own_mapper->excludes(command->get_option(ours));
   CLI::Option* baseline =
       command
@@ -282,8 +283,8 @@ Command add_run_command(CLI::App& program) {
   for (const char* settled : {"--poses", "--depth", "--association"}) command->get_option("--config")->excludes(settled);
   options->suite.add_to(*command);
   // Each run of a suite has its own.
-  for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--config", "--poses", "--depth",
-                          "--association", "--budget", "--baseline", "--mapper"})
+  for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--extrinsics", "--config", "--poses",
+                          "--depth", "--association", "--budget", "--baseline", "--mapper"})
     command->get_option("--suite")->excludes(own);
   options->common.add_to(*command);
   command->footer(

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "harness/calibrate/extrinsics.h"
 #include "harness/run/closed_loop.h"
 #include "harness/run/truth_stages.h"
 #include "harness/score/number_text.h"
@@ -69,11 +70,12 @@ std::optional<double> difference(const std::optional<double>& a, const std::opti
 std::vector<BudgetRow> run_budget(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
                                   const std::vector<ListedObject>& truth, const std::function<void(double)>& progress) {
   SimulatedStream stream(config.scenario, scene, config.simulation);
+  const StreamInfo told = told_by_extrinsics(stream.info(), config.extrinsics);
   std::vector<Variant> variants = variants_of(config);
   std::vector<std::unique_ptr<Mapper>> mappers;
   for (const Variant& variant : variants) {
     mappers.push_back(
-        variant.same ? nullptr : std::make_unique<Mapper>(variant.config.mapper, stages_with_truth(variant.config, stream), stream.info()));
+        variant.same ? nullptr : std::make_unique<Mapper>(variant.config.mapper, stages_with_truth(variant.config, stream, told), told));
   }
   std::optional<Stamp> first;
   while (auto event = stream.next()) {

@@ -7,6 +7,7 @@
 
 #include "core/digest.h"
 #include "core/error.h"
+#include "harness/calibrate/extrinsics.h"
 #include "harness/run/truth_stages.h"
 #include "harness/truth/sensor_poses.h"
 #include "harness/truth/true_list.h"
@@ -51,6 +52,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   SimulationConfig simulation = config.simulation;
   simulation.ideal_depth = config.extras.depth || config.extras.pictures;
   SimulatedStream stream(config.scenario, scene, simulation);
+  ToldStream told(stream, told_by_extrinsics(stream.info(), config.extrinsics));
   const std::map<std::string, CameraConfig>& cameras = config.scenario.sensors.cameras;
   std::unique_ptr<SurfaceCoverage> coverage;
   if (config.extras.visible_share && !cameras.empty() && !scene->objects.empty()) {
@@ -64,7 +66,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   SensorPoses sensor_poses(stream, config.scenario.sensors);
   std::vector<ObjectView> views;  // of the frame that was mapped last
   // What the mapper leaves out of the measured depth is no missing measurement.
-  const OwnBodyMask own_body(stream.info());
+  const OwnBodyMask own_body(told.info());
   const auto without_vehicle = [&own_body](const FrameTruth& truth) {
     RgbdFrame frame;
     frame.sensor = truth.sensor;
@@ -98,11 +100,11 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   if (config.truth_frames.enabled) {
     hooks.truth_picture = [&](const RgbdFrame& frame) { return draw_truth(frame.colour, stream.last_frame_truth(), views, *scene); };
   }
-  Stages stages = stages_with_truth(config, stream);
+  Stages stages = stages_with_truth(config, stream, told.info());
   // Before the folder is made: the map may be the one that is there.
   std::optional<LoadedMap> resumed = load_resumed(config.resume, config.mapper.integrate);
   if (ready) ready();
-  result.mapping = map_stream(stream, config.mapper, std::move(stages), config.simulation.max_frames, hooks, std::move(resumed));
+  result.mapping = map_stream(told, config.mapper, std::move(stages), config.simulation.max_frames, hooks, std::move(resumed));
 
   const ObjectMap& map = result.mapping.map;
   result.mapped = listed(map.objects);
@@ -119,7 +121,7 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   score.profile = config.mapper.profile;
   score.seed = config.scenario.seed;
   score.digest = digest_of(map);
-  score.stages = stage_names(config, stream.info());
+  score.stages = stage_names(config, told.info());
   result.detections = detections.lines();
   score.detection = detections.score();
   score.objects = compare_lists(result.mapped, result.truth, config.score);

@@ -57,6 +57,7 @@ RunConfig chosen_run(const RunChoice& choice) {
   config.simulation.truth_depth = choice.depth == "truth";
   config.simulation.max_frames = choice.frames;
   config.resume = choice.resume;
+  config.extrinsics = choice.extrinsics;
   return config;
 }
 

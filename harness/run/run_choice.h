@@ -25,6 +25,7 @@ struct RunChoice {
   std::optional<double> rate_hz;  // nothing: as the profile has it
   int frames = 0;                 // 0: all
   std::string resume;             // a map.waretwin; no key: nothing that a file says over and over
+  std::string extrinsics;         // of `calibrate`; no key: `set` names it
 
   void visit(Fields& f);
 };

@@ -39,6 +39,7 @@ void RunConfig::visit(Fields& f) {
   f.group("external_mapper", external_mapper, "another mapper in place of ours (run --mapper)");
   f.group("bag", bag, "how a ROS bag is written (record, run --mapper)");
   f("resume", resume, "the map.waretwin to go on from; empty: a new map");
+  f("extrinsics", extrinsics, "a calibration that says where the mapper takes the camera to sit; empty: where its bracket is drawn");
 }
 
 RunConfig load_run_config(const fs::path& scenario, RunConfig base, const fs::path& config, const std::vector<Setting>& settings) {

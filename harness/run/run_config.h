@@ -51,7 +51,8 @@ struct RunConfig {
   OutputConfig output;
   RosBagFormat bag;
   ExternalMapper external_mapper;
-  std::string resume;  // the map.waretwin to go on from; empty: a new map
+  std::string resume;      // the map.waretwin to go on from; empty: a new map
+  std::string extrinsics;  // of `calibrate`: where the mapper takes the camera to sit; empty: where its bracket is drawn
 
   void visit(Fields& f);
 };

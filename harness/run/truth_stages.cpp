@@ -5,10 +5,10 @@
 
 namespace waretwin {
 
-Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream) {
+Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream, const StreamInfo& told) {
   MapperConfig mapper = config.mapper;
   if (config.truth_stages.detector) mapper.detector = "none";
-  StreamInfo info = stream.info();
+  StreamInfo info = told;
   if (config.truth_stages.poses) {
     // The localiser made here is replaced below: the stream need not have what it would read.
     info.has_odometry = true;

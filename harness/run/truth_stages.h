@@ -10,8 +10,8 @@
 
 namespace waretwin {
 
-// The stream must outlive the stages. Throws Error as make_stages does.
-Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream);
+// `told`: what the mapper is told of the stream, which must outlive the stages. Throws Error as make_stages does.
+Stages stages_with_truth(const RunConfig& config, const SimulatedStream& stream, const StreamInfo& told);
 
 // Who makes what: detector, poses, association, depth.
 std::map<std::string, std::string> stage_names(const RunConfig& config, const StreamInfo& info);

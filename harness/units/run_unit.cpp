@@ -28,11 +28,13 @@ void add_run(const RunConfig& config, const std::string& scene, Digest& digest) 
   without_names.mapper.boxes.clear();
   without_names.mapper.detect.names.clear();
   without_names.resume.clear();
+  without_names.extrinsics.clear();
   without_names.scenario.robot.model.clear();  // what is in it stands in the scene
   digest.add(write_config([&](Fields& f) { without_names.visit(f); }));
   digest.add(scene);
   add_detector(config, digest);
   if (!config.resume.empty()) digest.add(read_file(config.resume));
+  if (!config.extrinsics.empty()) digest.add(read_file(config.extrinsics));
 }
 
 }  // namespace waretwin

@@ -363,6 +363,7 @@ const std::map<std::string, Recipe>& recipes() {
       {"marker_2", [] { return picture_of(draw_station_sign(2)); }},
       {"marker_3", [] { return picture_of(draw_station_sign(3)); }},
       {"marker_4", [] { return picture_of(draw_station_sign(4)); }},
+      {"checkerboard", [] { return picture_of(draw_checkerboard(), 0.9); }},
       {"clock", [] { return picture_of(draw_clock()); }},
       {"keyboard", [] { return picture_of(draw_keyboard(), 0.6, 0.15); }},
   };

@@ -12,7 +12,7 @@ std::vector<HallFile> build_hall(const std::string& name) {
   std::vector<std::string> movers;
   if (name == "agiprobot") {
     build_agiprobot(kit);
-    movers = {"tote", "block", "person", "cart", "vehicle"};
+    movers = {"tote", "block", "person", "cart", "vehicle", "board", "stand"};
   } else if (name == "warehouse") {
     build_warehouse(kit);
     movers = {"carton", "tote", "person", "cart"};

@@ -237,4 +237,15 @@ Mat draw_keyboard() {
   return p;
 }
 
+Mat draw_checkerboard() {
+  constexpr int kSquare = 28, kBorder = 20;  // 2.5 mm a pixel on a board of 70 mm squares
+  Mat p(7 * kSquare + 2 * kBorder, 10 * kSquare + 2 * kBorder, CV_8UC3, Scalar(236, 238, 238));
+  for (int row = 0; row < 7; ++row) {
+    for (int column = row % 2; column < 10; column += 2) {
+      fill(p, {kBorder + column * kSquare, kBorder + row * kSquare, kSquare, kSquare}, {24, 24, 24});
+    }
+  }
+  return p;
+}
+
 }  // namespace waretwin::builder

@@ -19,5 +19,6 @@ cv::Mat draw_warning_label();           // square
 cv::Mat draw_station_sign(int number);  // square
 cv::Mat draw_clock();                   // square
 cv::Mat draw_keyboard();                // 3:1
+cv::Mat draw_checkerboard();            // 80:59, 10 x 7 squares with a white border of 5/7 square
 
 }  // namespace waretwin::builder

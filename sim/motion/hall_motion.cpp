@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "sim/motion/belts.h"
 #include "sim/motion/drive.h"
+#include "sim/motion/held.h"
 #include "sim/motion/items.h"
 #include "sim/motion/walkers.h"
 #include "sim/robot.h"
@@ -261,6 +262,10 @@ void HallMotion::State::record() {
     now.movers.push_back(item.present ? Snapshot::Place{item.stay, item.X_WG()} : Snapshot::Place{});
   }
   for (std::size_t i = 0; i < walkers->count(); ++i) now.movers.push_back({1, walkers->X_WG(i, time_of(step))});
+  for (const HeldConfig& thing : scenario.motion.held) {
+    now.movers.push_back({1, held_X_WG(thing, time_of(step))});
+    if (!thing.stand.empty()) now.movers.push_back({1, stand_X_WG(thing, time_of(step))});
+  }
   WARETWIN_CHECK(now.movers.size() == mover_count, "every mover has a place");
   if (drive) {
     if (step == 0) drive->begin_reckoning();

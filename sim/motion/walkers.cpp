@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/motion/held.h"
 #include "sim/motion/items.h"
 
 namespace waretwin {
@@ -28,7 +29,7 @@ RobotConfig way_of(const WalkerConfig& config) {
 }  // namespace
 
 Walkers::Walkers(BulletWorld& world, const Scene& scene, const MotionConfig& config, double time_s) : world_(world) {
-  const std::size_t first = scene.movers.size() - config.walkers.size();
+  const std::size_t first = scene.movers.size() - held_mover_count(config) - config.walkers.size();
   for (std::size_t i = 0; i < config.walkers.size(); ++i) {
     const Mover& mover = scene.movers[first + i];
     walkers_.push_back({.config = config.walkers[i], .way = RobotMotion(way_of(config.walkers[i])), .role = {}, .body = nullptr});

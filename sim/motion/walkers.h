@@ -12,7 +12,7 @@ namespace waretwin {
 
 class Walkers {
  public:
-  // Their movers are the last ones of the scene.
+  // Their movers stand in the scene before those of held things, which are the last.
   Walkers(BulletWorld& world, const Scene& scene, const MotionConfig& config, double time_s);
 
   std::size_t count() const { return walkers_.size(); }

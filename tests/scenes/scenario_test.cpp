@@ -81,7 +81,9 @@ const char* const kMotion =
     "  clutter:\n"
     "    - {name: tool, file: plain.glb, count: 2, x_m: 0, y_m: 0}\n"
     "  walkers:\n"
-    "    - {file: plain.glb, path: [{x_m: 3, y_m: 3}]}\n";
+    "    - {file: plain.glb, path: [{x_m: 3, y_m: 3}]}\n"
+    "  held:\n"
+    "    - {name: sign, file: plain.glb, stand: plain.glb, places: [{x_m: 1, y_m: 0, z_m: 1}, {x_m: 2, y_m: 0, z_m: 1}]}\n";
 
 TEST_F(ScenarioTest, MoversStandInOrderAndAreNoObjects) {
   GltfWriter w;
@@ -89,10 +91,12 @@ TEST_F(ScenarioTest, MoversStandInOrderAndAreNoObjects) {
   put_file(folder.path() / "plain.glb", w.glb());
   const Scenario scenario = load_scenario(write(kYaml + std::string(kMotion)));
   const Scene scene = build_scene(scenario);
-  ASSERT_EQ(scene.movers.size(), 6u);
+  ASSERT_EQ(scene.movers.size(), 8u);
   EXPECT_EQ(scene.movers[0].name, "plain");
   EXPECT_EQ(scene.movers[3].name, "tool");
   EXPECT_EQ(scene.movers[5].name, "plain");
+  EXPECT_EQ(scene.movers[6].name, "sign");
+  EXPECT_EQ(scene.movers[7].name, "plain") << "its stand";
   EXPECT_EQ(scene.objects.size(), 2u);
   for (const Mover& mover : scene.movers) {
     ASSERT_EQ(mover.instances.size(), 1u);
@@ -100,12 +104,16 @@ TEST_F(ScenarioTest, MoversStandInOrderAndAreNoObjects) {
   }
   EXPECT_EQ(scene.meshes.size(), 2u) << "copies share their mesh";
   const std::string text = describe_scenario(scenario);
-  for (const char* part : {"second: 0.4 m/s", "2 x tool", "1 places", "at most 3"}) EXPECT_NE(text.find(part), std::string::npos) << text;
+  for (const char* part : {"second: 0.4 m/s", "2 x tool", "1 places", "at most 3", "sign: plain.glb in 2 places"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
 
   const std::string all = kYaml + std::string(kMotion);
   EXPECT_ERROR(load_scenario(write(all, "{file: plain.glb, x_m: 1", "{file: plan.glb, x_m: 1")), "motion.streams.0.file", "no such file");
   EXPECT_ERROR(load_scenario(write(all, "at_s: 2", "at_s: 1")), "motion.belts.0.changes", "in order");
   EXPECT_ERROR(load_scenario(write(all, "path: [{x_m: 3, y_m: 3}]", "path: []")), "motion.walkers.0.path", "at least one");
+  EXPECT_ERROR(load_scenario(write(all, "stand: plain.glb", "stand: plan.glb")), "motion.held.0.stand", "no such file");
+  EXPECT_ERROR(load_scenario(write(all, "places: [{x_m: 1, y_m: 0, z_m: 1}, {x_m: 2, y_m: 0, z_m: 1}]", "places: []")),
+               "motion.held.0.places", "at least one");
   EXPECT_ERROR(load_scenario(write(all, "most: 3", "most: 0")), "motion.streams.0.most", "1");
   // A node that the file itself makes a true object cannot move.
   GltfWriter classed;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "sim/motion/belt_surface.h"
 #include "sim/motion/hall_motion.h"
+#include "sim/motion/held.h"
 #include "tests/sim/motion_scene.h"
 
 namespace waretwin {
@@ -306,6 +307,46 @@ TEST(Walkers, GoRoundAndPushAside) {
     EXPECT_LT(caster->cast(ray).distance, 10.0f) << "it is where it can be seen";
   }
   EXPECT_NEAR(farthest, 3.0f, 0.01f);
+}
+
+TEST(Held, StandsStillInOnePlaceAfterTheOther) {
+  MotionScene hall;
+  WalkerConfig walker;
+  Waypoint a;
+  a.x_m = 5.0;
+  walker.path = {a};
+  hall.scenario.motion.walkers = {walker};
+  HeldConfig board;
+  board.stand = "stand.glb";
+  board.hold_s = 2.0;
+  board.move_s = 0.5;
+  board.places = {{.x_m = 1.0, .y_m = 0.0, .z_m = 0.5, .yaw_deg = 180.0},
+                  {.x_m = 2.0, .y_m = 1.0, .z_m = 0.5, .yaw_deg = 90.0, .tilt_deg = 30.0},
+                  {.x_m = 3.0, .y_m = 0.0, .z_m = 0.7, .roll_deg = 20.0}};
+  hall.scenario.motion.held = {board};
+  hall.add_mover("walker", {0.4f, 0.6f, 1.8f});
+  hall.add_mover("board", {0.02f, 0.8f, 0.6f});
+  hall.add_mover("stand", {0.1f, 0.1f, 0.4f});
+  const auto caster = hall.caster();
+  HallMotion moves(hall.scenario, *caster);
+  const auto place = [&](double time_s, std::size_t mover) {
+    moves.advance_to(from_seconds(time_s));
+    return moves.moment(from_seconds(time_s), from_seconds(time_s)).movers[mover].X_WG_end;
+  };
+  EXPECT_TRUE(place(0.5, 1).translation().isApprox(Eigen::Vector3f(1.0f, 0.0f, 0.5f), 1e-6f));
+  EXPECT_TRUE(place(2.0, 1).translation().isApprox(Eigen::Vector3f(1.0f, 0.0f, 0.5f), 1e-6f));
+  EXPECT_TRUE(place(2.25, 1).translation().isApprox(Eigen::Vector3f(1.5f, 0.5f, 0.5f), 1e-4f)) << "half way";
+  for (const double time_s : {2.5, 3.5, 4.5}) {
+    EXPECT_TRUE(place(time_s, 1).translation().isApprox(Eigen::Vector3f(2.0f, 1.0f, 0.5f), 1e-5f)) << time_s;
+  }
+  // Facing y, leaning back by 30 deg: the face looks up by as much; its stand does not.
+  const auto second = held_X_WG(board, 3.0), stand = stand_X_WG(board, 3.0);
+  EXPECT_TRUE(second.linear().col(0).isApprox(Eigen::Vector3d(0.0, std::cos(to_radians(30.0)), 0.5), 1e-9));
+  EXPECT_TRUE(stand.linear().col(0).isApprox(Eigen::Vector3d::UnitY(), 1e-9));
+  EXPECT_TRUE(stand.translation().isApprox(second.translation(), 1e-12));
+  EXPECT_TRUE(place(60.0, 1).translation().isApprox(Eigen::Vector3f(3.0f, 0.0f, 0.7f), 1e-5f)) << "it stays in its last place";
+  EXPECT_TRUE(place(60.0, 2).linear().isApprox(Eigen::Matrix3f::Identity(), 1e-5f));
+  EXPECT_TRUE(place(60.0, 0).translation().isApprox(Eigen::Vector3f(5.0f, 0.0f, 0.0f), 1e-5f)) << "the walker is who it was";
 }
 
 TEST(HallMotion, SameSeedSameBytesOtherSeedOthers) {

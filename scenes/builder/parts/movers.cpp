@@ -152,7 +152,29 @@ int add_vehicle(Kit& kit, int parent, const Placement& at) {
   return node;
 }
 
-std::vector<std::string> mover_names() { return {"carton", "tote", "person", "cart", "block", "vehicle"}; }
+int add_board(Kit& kit, int parent, const Placement& at) {
+  return kit.place("board", parent, at, "board", [&](MeshDraft& draft) {
+    constexpr double kWidth = 0.80, kHeight = 0.59, kThick = 0.012;
+    draft.add(kit.material("checkerboard"), picture({0, -kWidth / 2, -kHeight / 2}, {0, kWidth, 0}, {0, 0, kHeight}));
+    draft.add(kit.material("aluminium"), box(kThick - 0.001, kWidth, kHeight).move(-0.001 - kThick / 2, 0, 0));
+  });
+}
+
+int add_board_stand(Kit& kit, int parent, const Placement& at) {
+  return kit.place("stand", parent, at, "stand", [&](MeshDraft& draft) {
+    // The pole is far enough behind that the board can lean either way.
+    constexpr double kHead = 0.42, kBehind = -0.22;
+    const int steel = kit.material("dark_steel");
+    draft.add(steel, cylinder({kBehind, 0, -kHead + 0.10}, {kBehind, 0, 0.015}, 0.015, 16));
+    draft.add(steel, cylinder({kBehind, 0, 0}, {-0.02, 0, 0}, 0.012, 12));
+    const double turns[] = {0, 110, 250};
+    for (const double degrees : turns) {
+      draft.add(steel, cylinder({0, 0, 0.11}, {-0.30, 0, 0.012}, 0.010, 12).rotate(Vector3d::UnitZ(), degrees).move(kBehind, 0, -kHead));
+    }
+  });
+}
+
+std::vector<std::string> mover_names() { return {"carton", "tote", "person", "cart", "block", "vehicle", "board", "stand"}; }
 
 std::string build_mover(const std::string& name) {
   Kit kit;
@@ -168,8 +190,12 @@ std::string build_mover(const std::string& name) {
     add_block(kit, -1, {});
   } else if (name == "vehicle") {
     add_vehicle(kit, -1, {});
+  } else if (name == "board") {
+    add_board(kit, -1, {});
+  } else if (name == "stand") {
+    add_board_stand(kit, -1, {});
   } else {
-    throw Error("model '" + name + "' is not known; expected carton, tote, person, cart, block or vehicle");
+    throw Error("model '" + name + "' is not known; expected carton, tote, person, cart, block, vehicle, board or stand");
   }
   return kit.model.to_glb(name);
 }

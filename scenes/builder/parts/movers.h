@@ -16,8 +16,14 @@ int add_cart(Kit& kit, int parent, const Placement& at);    // a transport vehic
 int add_vehicle(Kit& kit, int parent, const Placement& at);
 int add_block(Kit& kit, int parent, const Placement& at);  // a workpiece as small as a fist
 
+// A calibration board of 0.80 x 0.59 m with 9 x 6 inner corners, 70 mm apart. The middle of its printed face is the origin, x points out of
+// it.
+int add_board(Kit& kit, int parent, const Placement& at);
+// What holds it by the back: a tripod whose head is at the board's origin, 0.42 m above the floor.
+int add_board_stand(Kit& kit, int parent, const Placement& at);
+
 std::vector<std::string> mover_names();
-// The model of this name as .glb: carton, tote, person, cart, block or vehicle. Throws Error for another.
+// The model of this name as .glb: carton, tote, person, cart, block, vehicle, board or stand. Throws Error for another.
 std::string build_mover(const std::string& name);
 
 }  // namespace waretwin::builder
