@@ -93,10 +93,14 @@ foreach(header pluginlib/class_loader.hpp class_loader/class_loader.hpp rcpputil
     list(APPEND ROS_DEEPER_INCLUDE_DIRS "${ROS_${package}_INCLUDE_DIR}")
   endif()
 endforeach()
+set(ROS_FOUND TRUE)
 foreach(part IN LISTS ROS_LIBRARIES)
   find_library(WARETWIN_ROS_${part} ${part})
+  if(NOT WARETWIN_ROS_${part})
+    set(ROS_FOUND FALSE)
+  endif()
 endforeach()
-if(ROSBAG_INCLUDE_DIR AND ROS_ament_index_cpp_INCLUDE_DIR AND ROS_MSGS_INCLUDE_DIR AND TF2_MSGS_INCLUDE_DIR AND TF2_INCLUDE_DIR AND WARETWIN_ROS_rosbag_storage AND WARETWIN_ROS_tf2)
+if(ROSBAG_INCLUDE_DIR AND ROS_ament_index_cpp_INCLUDE_DIR AND ROS_MSGS_INCLUDE_DIR AND TF2_MSGS_INCLUDE_DIR AND TF2_INCLUDE_DIR AND ROS_FOUND)
   add_library(waretwin_rosbag INTERFACE)
   add_library(waretwin::rosbag ALIAS waretwin_rosbag)
   target_include_directories(waretwin_rosbag SYSTEM INTERFACE ${ROSBAG_INCLUDE_DIR} ${ROS_MSGS_INCLUDE_DIR} ${TF2_INCLUDE_DIR}
@@ -106,7 +110,7 @@ if(ROSBAG_INCLUDE_DIR AND ROS_ament_index_cpp_INCLUDE_DIR AND ROS_MSGS_INCLUDE_D
   endforeach()
   target_compile_definitions(waretwin_rosbag INTERFACE WARETWIN_ROSBAG)
 else()
-  message(STATUS "ROS 1 libraries not found: bags are neither read nor written (librosbag-storage-dev, libtf2-dev, libnav-msgs-dev)")
+  message(STATUS "ROS 1 libraries not found: bags are neither read nor written (librosbag-storage-dev, libsensor-msgs-dev, libnav-msgs-dev, libtf2-msgs-dev, libtf2-dev)")
 endif()
 
 # For calibrate, where it is installed (libceres-dev).

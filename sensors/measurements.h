@@ -16,6 +16,8 @@ namespace waretwin {
 // to keep its rate then cost nothing. Call load_pictures before reading them.
 struct RgbdFrame {
   Stamp stamp = 0;
+  // By which other files name the picture, where a clock was corrected since; nothing: `stamp`.
+  std::optional<Stamp> named_stamp;
   std::string sensor;
   cv::Mat colour;  // height x width, CV_8UC3, BGR
   cv::Mat depth;   // height x width, CV_32FC1, metres along the optical axis (z), 0 = invalid; whole millimetres

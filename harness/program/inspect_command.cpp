@@ -99,6 +99,14 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
     const Intrinsics& k = camera.intrinsics;
     std::cout << "  camera " << name << ": " << k.width << " x " << k.height << " pixels, fx " << k.fx << " fy " << k.fy << " cx " << k.cx
               << " cy " << k.cy << ", depth " << camera.depth_min_m << " to " << camera.depth_max_m << " m, " << camera.rate_hz << " Hz\n";
+    const Eigen::Vector3d p_BC = camera.X_BC.translation(), ahead_B = camera.X_BC.linear().col(2);
+    if (!camera.X_BC.isApprox(Pose::Identity())) {
+      std::cout << "    at (" << p_BC.x() << ", " << p_BC.y() << ", " << p_BC.z() << ") m on the vehicle, looks "
+                << std::round(10.0 * to_degrees(std::atan2(ahead_B.y(), ahead_B.x()))) / 10.0 << " deg to the left and "
+                << std::round(10.0 * to_degrees(std::asin(-ahead_B.z()))) / 10.0 << " deg down\n";
+      // Its pictures' lower edge is up.
+      if (camera.X_BC.linear()(2, 1) > 0.1) std::cout << "    hangs upside down: recording.rotate_deg=180 turns its pictures upright\n";
+    }
     if (!camera.native) continue;
     const Intrinsics& own = camera.native->lens.intrinsics();
     std::cout << "    with the depth camera's own images: " << own.width << " x " << own.height << " pixels, fx " << own.fx << " fy "
@@ -123,7 +131,9 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
   }
   std::cout << "  " << frames << " frames, " << scans << " scans, " << readings << " odometry readings in "
             << (first ? to_seconds(last - *first) : 0.0) << " s\n  poses " << (info.has_recorded_poses ? "recorded" : "not recorded")
-            << ", up is " << (info.up_W + Eigen::Vector3d::Zero()).transpose() << ", " << stream->lost_frames() << " frames without a pose left out\n";
+            << ", up is " << (info.up_W + Eigen::Vector3d::Zero()).transpose() << ", " << stream->lost_frames()
+            << " frames without a pose left out\n";
+  for (const std::string& source : stream->sources()) std::cout << "  " << source << "\n";
   for (const std::string& remark : stream->remarks()) std::cout << "  " << remark << "\n";
 }
 

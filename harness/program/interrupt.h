@@ -3,7 +3,7 @@
 
 namespace waretwin {
 
-// While it lives, SIGINT and SIGTERM only leave a mark; a second one ends the process as ever.
+// While it lives, SIGINT, SIGTERM and SIGHUP only leave a mark; a second one ends the process as ever.
 class InterruptWatch {
  public:
   InterruptWatch();

@@ -16,6 +16,7 @@
 #include "harness/run/map_config.h"
 #include "harness/run/run_choice.h"
 #include "harness/run/run_folder.h"
+#include "mapper/detect/boxes_file.h"
 
 namespace waretwin {
 
@@ -26,6 +27,22 @@ struct MapOptions {
   MappingOptions mapping;
   std::string recording, out, poses;
 };
+
+// Boxes of another recording, or of another clock: the map is without objects, and nobody would see why.
+void warn_of_unused_boxes(const MapperConfig& config, const MappingResult& result) {
+  for (const FrameRow& row : result.frames) {
+    if (row.report.detections > 0) return;
+  }
+  const FrameBoxes boxes = read_boxes(config.boxes, config.detect);
+  std::size_t count = 0;
+  for (const auto& [stamp, of_frame] : boxes) count += of_frame.size();
+  if (result.frames.empty() || boxes.empty()) return;
+  const auto seconds = [](Stamp stamp) { return std::to_string(to_seconds(stamp)); };
+  spdlog::warn(
+      "no mapped frame has a box of {}: it holds {} boxes (after mapper.detect.classes) from {} to {} s, the frames are from {} to {} s",
+      config.boxes, count, seconds(boxes.begin()->first), seconds(boxes.rbegin()->first), seconds(result.frames.front().report.stamp),
+      seconds(result.frames.back().report.stamp));
+}
 
 int map(const MapOptions& options) {
   options.common.apply();
@@ -66,6 +83,7 @@ int map(const MapOptions& options) {
     result = map_stream(told, config.mapper, std::move(stages), config.frames, hooks, std::move(resumed));
   }
   for (const std::string& remark : stream->remarks()) spdlog::info("{}", remark);
+  if (config.mapper.detector == "boxes") warn_of_unused_boxes(config.mapper, result);
   if (stream->lost_frames() > 0) spdlog::info("{} frames were left out because their pose was lost", stream->lost_frames());
   write_mapping(folder, result, options.recording, config.mapper.profile, config.output);
 
@@ -96,7 +114,9 @@ Command add_map_command(CLI::App& program) {
   options->mapping.add_to(*command,
                           "none (default: no objects); yolo: the shipped model conveyor, or that of --set mapper.model=MODEL; a model's "
                           "folder, file or shipped name; boxes made elsewhere: a JSON file, or a folder with a text file a frame");
-  command->add_option("--poses", options->poses, "laser, odometry or recorded (default: laser where there are scans, else recorded)")
+  command
+      ->add_option("--poses", options->poses,
+                   "laser, odometry or recorded (default: laser where there are scans, else recorded, else odometry)")
       ->check(CLI::IsMember({"laser", "odometry", "recorded"}));
   command->get_option("--config")->excludes("--poses");
   options->common.add_to(*command);

@@ -165,12 +165,13 @@ int run_with_external_mapper(const RunOptions& options, const RunConfig& config,
     }
     return 1;
   }
+  if (!result.trajectory_problem.empty()) spdlog::warn("{}", result.trajectory_problem);
   const RunScore& score = *result.score;
   print_summary("as mapped", score.objects.plain.summary);
   if (score.objects.aligned) print_summary("aligned  ", score.objects.aligned->summary);
   print_explanations(score.objects);
-  std::cout << "the mapper took " << shell.wall_s << " s and " << shell.peak_rss_mb << " MB\ndigest " << score.digest << "\nresults in "
-            << options.out << " (report.html, table6.md, score.json, mapper/)\n";
+  std::cout << "the mapper took " << number("%.1f s", shell.wall_s) << " and " << number("%.0f MB", shell.peak_rss_mb) << "\ndigest "
+            << score.digest << "\nresults in " << options.out << " (report.html, table6.md, score.json, mapper/)\n";
   const bool got_worse = baseline && worse_than(*baseline, tolerances, options, score, *folder);
   if (baseline) write_report(folder->path(), ReportKind::kRun);
   return contacts_or(got_worse ? 1 : 0, score);
@@ -179,7 +180,6 @@ int run_with_external_mapper(const RunOptions& options, const RunConfig& config,
 int run(const RunOptions& options) {
   options.common.apply();
   if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.out);
-  if (!options.mapper.empty()) expect_no_own_mapper_options(options);
   if (options.scenario.empty()) throw Error("no hall; expected SCENARIO, or --suite SUITE");
   std::vector<Setting> settings = options.common.settings();
   const std::vector<Setting> of_tolerances = take_tolerance_settings(settings);
@@ -191,6 +191,10 @@ int run(const RunOptions& options) {
   std::optional<JudgedScore> baseline;
   if (!options.baseline.empty()) baseline = read_judged_score(options.baseline);
   const RunConfig config = configure(options, std::move(settings));
+  if (!config.external_mapper.command.empty()) {
+    if (options.budget) throw Error("--budget: another mapper has no stages of ours (external_mapper.command); expected one or the other");
+    expect_no_own_mapper_options(options);
+  }
   if (options.budget && !config.resume.empty()) {
     throw Error("--budget: the configuration goes on from a map (resume: " + config.resume +
                 "); expected none, for an earlier drive's errors belong to no stage of this one");

@@ -23,10 +23,6 @@ constexpr const char* kRecording = "{recording}";
 constexpr const char* kOut = "{out}";
 constexpr const char* kBoxes = "{boxes}";
 
-void replace_all(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
-}
-
 void check(const RunConfig& config) {
   const ExternalMapper& mapper = config.external_mapper;
   for (const char* needed : {kRecording, kOut}) {
@@ -78,7 +74,7 @@ std::string digest_of(const std::vector<ListedObject>& objects, const std::vecto
 }
 
 RunScore score_of(const RunConfig& config, const ShellResult& shell, const RecordedDrive& drive, const std::vector<ListedObject>& mapped,
-                  const std::optional<Trajectory>& trajectory) {
+                  const std::optional<Trajectory>& trajectory, const std::vector<std::pair<Pose, Pose>>& pairs) {
   RunScore score;
   score.scenario = config.scenario.name;
   score.profile = "mapper";
@@ -90,7 +86,6 @@ RunScore score_of(const RunConfig& config, const ShellResult& shell, const Recor
                   {"depth", config.simulation.truth_depth ? "truth" : "sensor"}};
   score.objects = compare_lists(mapped, drive.truth, config.score);
   if (trajectory) {
-    const auto pairs = associate_poses(*trajectory, {drive.true_trajectory, true});
     score.trajectory = score_trajectory(pairs, TrajectoryAlignment::kNone);
     score.trajectory_aligned = score_trajectory(pairs, TrajectoryAlignment::kSe3);
   }
@@ -108,39 +103,68 @@ ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<co
   const ExternalMapper& mapper = config.external_mapper;
   check(config);
   RunFolder& folder = ready();
-  for (const char* earlier :
-       {"cuboids.json", "trajectory.tum", "trajectory_covariance.csv", "timing.csv", "frames.jsonl", "map.glb", "map.ply",
-        "detections.jsonl", "truth_frames.jsonl", "budget.md", "mesh.png", "surface_error.ply", "upright.json"}) {
+  // Of an earlier run: it would stand beside this one's, and the truth where the command might look.
+  for (const char* earlier : {"cuboids.json",
+                              "truth.json",
+                              "trajectory.tum",
+                              "trajectory_truth.tum",
+                              "trajectory_covariance.csv",
+                              "table6.md",
+                              "topdown.png",
+                              "mesh.png",
+                              "timing.csv",
+                              "frames.jsonl",
+                              "map.glb",
+                              "map.ply",
+                              "map.waretwin",
+                              "cloud.ply",
+                              "surface_error.ply",
+                              "occupancy.pgm",
+                              "occupancy.yaml",
+                              "esdf.nrrd",
+                              "octomap.bt",
+                              "detections.jsonl",
+                              "truth_frames.jsonl",
+                              "budget.md",
+                              "upright.json"}) {
     folder.remove(earlier);
   }
+  for (const char* part : {"objects", "frames", "frames/small", "truth_poses", "truth_poses/cameras", "truth_poses/lasers"})
+    folder.clear(part);
   const fs::path base = fs::absolute(folder.path()).lexically_normal() / "mapper", recording = base / "recording", out = base / "out";
   make_empty(out);
-  RecordPlan plan{mapper.format, false, config.truth_stages.poses, config.truth_stages.detector, config.mapper.rate_hz};
+  const RecordPlan plan{mapper.format, false, config.truth_stages.poses, config.truth_stages.detector, config.mapper.rate_hz};
   const RecordConfig to_record{config.scenario, config.simulation, config.truth_detector, config.bag};
   ExternalRunResult result;
-  RecordedDrive drive =
+  const RecordedDrive drive =
       record_drive(to_record, scene, plan, recording, "scenario " + config.scenario.name,
                    [&](double done, const RecordSummary& so_far) { progress(done, std::to_string(so_far.frames) + " frames recorded"); });
-  result.truth = drive.truth;
-  folder.write("truth.json", truth_json(drive.truth));
-  folder.write("trajectory_truth.tum", tum_text(drive.true_trajectory));
-
-  std::string command = mapper.command;
-  replace_all(command, kRecording, shell_word(recording.string()));
-  replace_all(command, kOut, shell_word(out.string()));
-  replace_all(command, kBoxes, shell_word((recording / "boxes.json").string()));
+  const std::string command =
+      with_words(mapper.command, {{kRecording, recording.string()}, {kOut, out.string()}, {kBoxes, (recording / "boxes.json").string()}});
   result.shell = run_shell(command, base / "stdout.log", base / "stderr.log", mapper.timeout_s, [&](double seconds) {
     progress(1.0, "the mapper runs for " + std::to_string(static_cast<int>(seconds)) + " s");
   });
   result.last_words = last_lines(base / "stderr.log", 5);
+  folder.write("truth.json", truth_json(drive.truth));
+  folder.write("trajectory_truth.tum", tum_text(drive.true_trajectory));
   if (result.shell.timed_out || result.shell.exit_code != 0) return result;
 
   const fs::path cuboids = out / "cuboids.json", poses = out / "trajectory.tum";
   if (!fs::exists(cuboids)) throw Error(cuboids, "is missing though the mapper ended well; expected a list of objects as cuboids.json");
   const std::vector<ListedObject> mapped = read_object_list(cuboids);
   std::optional<Trajectory> trajectory;
-  if (fs::exists(poses)) trajectory = read_trajectory(poses);
-  result.score = score_of(config, result.shell, drive, mapped, trajectory);
+  std::vector<std::pair<Pose, Pose>> pairs;
+  try {
+    if (fs::exists(poses)) {
+      trajectory = read_trajectory(poses);
+      pairs = associate_poses(*trajectory, {drive.true_trajectory, true});
+    }
+  } catch (const Error& error) {
+    // The objects are scored all the same.
+    trajectory.reset();
+    result.trajectory_problem = poses.string() + " is not scored: " + error.what();
+  }
+  result.score = score_of(config, result.shell, drive, mapped, trajectory, pairs);
   folder.write("cuboids.json", read_file(cuboids));
   MapScene picture;
   picture.mapped = mapped;
@@ -154,8 +178,9 @@ ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<co
   folder.write("table6.md", table6(result.score->objects, config.scenario.name + ", mapper " + mapper.command));
   const std::string json = score_json(*result.score);
   write_report(folder.path(), ReportKind::kRun, json);
-  if (!mapper.keep_recording) fs::remove_all(recording);
   folder.write("score.json", json);
+  std::error_code stays;
+  if (!mapper.keep_recording) fs::remove_all(recording, stays);
   return result;
 }
 

@@ -6,6 +6,18 @@
 
 namespace waretwin {
 
+namespace {
+
+bool holds_model(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".cfg" || extension == ".onnx") return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::string>& detector, std::optional<double> rate_hz) {
   MapperConfig config = MapperConfig::make(profile);
   if (rate_hz) config.rate_hz = *rate_hz;
@@ -16,6 +28,10 @@ MapperConfig chosen_mapper(const std::string& profile, const std::optional<std::
   } else if (is_boxes(path)) {
     config.detector = "boxes";
     config.boxes = *detector;
+  } else if (std::filesystem::is_directory(path) && !holds_model(path)) {
+    throw Error(
+        "--detector " + *detector +
+        ": holds neither a model (one .cfg with .weights, or .onnx) nor boxes (text files called by their stamps); expected one of them");
   } else if (std::filesystem::exists(path) || is_shipped_model(path)) {
     config.detector = "yolo";
     config.model = *detector;

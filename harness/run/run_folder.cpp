@@ -63,6 +63,12 @@ constexpr const char* kOctomap = "octomap.bt";
 }  // namespace
 
 RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
+  // A recording's truth would be taken away as an earlier run's.
+  for (const char* of_others : {"recording.yaml", "scenario.yaml", "dataset.yaml"}) {
+    if (std::filesystem::exists(path / of_others))
+      throw Error(path,
+                  "holds " + std::string(of_others) + ", so it is no run's; expected a new name, an empty folder or an earlier run's");
+  }
   make_folder(path);
   for (const char* name : {"score.json", "map.json", "report.html", "baseline.md"}) remove(name);
 }

@@ -13,7 +13,8 @@ namespace waretwin {
 
 class RunFolder {
  public:
-  // Makes the folder and takes the score, the report and the verdict of an earlier run away. Throws Error where that cannot be.
+  // Makes the folder and takes the score, the report and the verdict of an earlier run away. Throws Error where that cannot be,
+  // and for a folder that holds a recording, a scenario or a dataset.
   explicit RunFolder(const std::filesystem::path& path);
 
   // Both create the folders in `name` that are missing.

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,7 +9,9 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "core/error.h"
@@ -38,29 +39,79 @@ class Output {
   int descriptor_;
 };
 
+// A signal's default action while it lives.
+class DefaultAction {
+ public:
+  explicit DefaultAction(int number) : number_(number) {
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    sigaction(number_, &action, &before_);
+  }
+  ~DefaultAction() { sigaction(number_, &before_, nullptr); }
+  DefaultAction(const DefaultAction&) = delete;
+  DefaultAction& operator=(const DefaultAction&) = delete;
+
+ private:
+  int number_;
+  struct sigaction before_ = {};
+};
+
 // A process group that ends with the scope.
 class Group {
  public:
   explicit Group(pid_t leader) : leader_(leader) {}
   ~Group() {
     kill(-leader_, SIGKILL);
-    if (!reaped_) wait4(leader_, nullptr, 0, nullptr);
+    if (!reaped_) waitpid(leader_, nullptr, 0);
   }
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 
   void signal(int number) const { kill(-leader_, number); }
   // Whether the shell is done; then how.
-  bool done(int& status, rusage& usage) {
-    const pid_t found = wait4(leader_, &status, WNOHANG, &usage);
+  bool done(int& status) {
+    const pid_t found = waitpid(leader_, &status, WNOHANG);
+    if (found < 0 && errno != EINTR) {
+      reaped_ = true;
+      throw InternalError("a command was lost: " + std::string(std::strerror(errno)));
+    }
     reaped_ = found == leader_;
     return reaped_;
+  }
+  // The most that any of its processes of now has held. (What the kernel says of an ended child counts what this program held when it
+  // was started.)
+  double peak_rss_mb() const {
+    double peak = 0.0;
+    std::error_code ignored;
+    for (std::filesystem::directory_iterator at("/proc", ignored), end; !ignored && at != end; at.increment(ignored)) {
+      const std::string name = at->path().filename().string();
+      if (name.find_first_not_of("0123456789") != std::string::npos || getpgid(static_cast<pid_t>(std::stol(name))) != leader_) continue;
+      std::ifstream status(at->path() / "status");
+      for (std::string line; std::getline(status, line);) {
+        if (line.rfind("VmHWM:", 0) == 0) peak = std::max(peak, std::strtod(line.c_str() + 6, nullptr) / 1024.0);
+      }
+    }
+    return peak;
   }
 
  private:
   pid_t leader_;
   bool reaped_ = false;
 };
+
+// The text as it stands within a shell's quotes.
+std::string within_quotes(const std::string& text, char quote) {
+  std::string inside;
+  for (const char c : text) {
+    if (quote == '\'') {
+      inside += c == '\'' ? "'\\''" : std::string(1, c);
+    } else {
+      if (c == '"' || c == '\\' || c == '$' || c == '`') inside += '\\';
+      inside += c;
+    }
+  }
+  return inside;
+}
 
 }  // namespace
 
@@ -69,7 +120,10 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   constexpr double kGrace_s = 3.0;
   const Output out(stdout_file), err(stderr_file);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  // Where it is ignored (some daemons leave it so), a child's end could not be waited for.
+  const DefaultAction children(SIGCHLD);
   const pid_t parent = getpid();
+  const auto start = Clock::now();
   const pid_t child = fork();
   if (child == 0) {
     setpgid(0, 0);
@@ -86,31 +140,49 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   setpgid(child, child);  // whichever of the two comes first
 
   Group group(child);
-  const auto start = Clock::now();
   ShellResult result;
   int status = 0;
-  rusage usage{};
-  for (bool asked = false; !group.done(status, usage);) {
+  for (bool asked = false; !group.done(status);) {
     const double now = seconds_since(start);
     if (timeout_s > 0.0 && now > timeout_s && !asked) {
       result.timed_out = asked = true;
       group.signal(SIGTERM);
     }
     if (asked && now > timeout_s + kGrace_s) group.signal(SIGKILL);
+    result.peak_rss_mb = std::max(result.peak_rss_mb, group.peak_rss_mb());
     if (waiting) waiting(now);
     // Short commands are not kept waiting, long ones not asked too often.
     std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(now / 10.0, 0.002, 0.1)));
   }
   result.wall_s = seconds_since(start);
   result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-  result.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
   return result;
 }
 
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-  return word + "'";
+std::string shell_word(const std::string& text) { return "'" + within_quotes(text, '\'') + "'"; }
+
+std::string with_words(const std::string& command, const std::map<std::string, std::string>& words) {
+  std::string result;
+  char quote = 0;  // that the place is within
+  for (std::size_t i = 0; i < command.size();) {
+    const auto found =
+        std::find_if(words.begin(), words.end(), [&](const auto& word) { return command.compare(i, word.first.size(), word.first) == 0; });
+    if (found != words.end()) {
+      result += quote == 0 ? shell_word(found->second) : within_quotes(found->second, quote);
+      i += found->first.size();
+      continue;
+    }
+    const char c = command[i++];
+    result += c;
+    if (c == '\\' && quote != '\'' && i < command.size()) {
+      result += command[i++];
+    } else if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = 0;
+    }
+  }
+  return result;
 }
 
 }  // namespace waretwin

@@ -30,7 +30,7 @@ std::string class_of(const tinyxml2::XMLElement& label) {
 
 // The upright box of the heading of one of the box's own edges.
 Cuboid upright(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, const Eigen::Matrix3d& axes, const std::string& frame) {
-  // Of the two edges that lie flattest the longer one on the floor gives the heading.
+  // Of the two edges other than the steepest the one that lies flatter gives the heading.
   int steepest = 0;
   axes.row(2).cwiseAbs().maxCoeff(&steepest);
   const int a = (steepest + 1) % 3, b = (steepest + 2) % 3;

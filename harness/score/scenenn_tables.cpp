@@ -90,7 +90,8 @@ std::string table1(const SceneNnScore& score, const ClassColumns& columns) {
   columns.add(row, figure_of(score.classes, &ClassMean::mean_iou3d));
   row.insert(row.end(), {percent(score.mean_iou3d), "-"});
   return "\n## Table 1: 3D IoU (%)\n\n" + markdown_table(rows, 2) +
-         "\nA dash: the sequence has no such object; 0: it has one, and nothing was found. Avg. is over the classes of a row, zeros "
+         "\nA dash: the sequence has no such object that counts; 0: it has one, and nothing was found. Avg. is over the classes of a row, "
+         "zeros "
          "included; "
          "the paper's own\naverages are as printed (docs/metrics.md says which of them follow from their rows). mean: of each class over "
          "the "

@@ -8,7 +8,7 @@ namespace waretwin {
 void TrajectoryRules::visit(Fields& f) {
   f("alignment", alignment, "se3: the estimate is laid over the truth before the ATE; none: as it is", {.choices = {"se3", "none"}});
   f("max_time_difference_s", max_time_difference_s, "stamps this near belong together", {.min = 0, .max = 3600});
-  f("time_offset_s", time_offset_s, "added to the stamps of the estimate", {.min = -1e9, .max = 1e9});
+  f("time_offset_s", time_offset_s, "added to the stamps of the estimate", {.min = -5e9, .max = 5e9});
   f("rpe_delta", rpe_delta, "how far apart the poses are whose motion the RPE compares", {.min = 1e-9, .max = 1e9});
   f("rpe_unit", rpe_unit, "unit of rpe_delta; metres and degrees along the path", {.choices = {"frames", "metres", "degrees", "seconds"}});
   f("rpe_pairs", rpe_pairs, "consecutive: each pair starts where the last one ends; all: a pair from every pose on",

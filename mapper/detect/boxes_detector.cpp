@@ -14,13 +14,14 @@ constexpr Stamp kTolerance = 1'000'000;
 BoxesDetector::BoxesDetector(const std::filesystem::path& path, const DetectConfig& config) : frames_(read_boxes(path, config)) {}
 
 std::vector<Detection> BoxesDetector::detect(const RgbdFrame& frame) {
-  auto nearest = frames_.lower_bound(frame.stamp);
+  const Stamp stamp = frame.named_stamp.value_or(frame.stamp);
+  auto nearest = frames_.lower_bound(stamp);
   if (nearest != frames_.begin()) {
     const auto before = std::prev(nearest);
-    if (nearest == frames_.end() || frame.stamp - before->first <= nearest->first - frame.stamp) nearest = before;
+    if (nearest == frames_.end() || stamp - before->first <= nearest->first - stamp) nearest = before;
   }
   std::vector<Detection> detections;
-  if (nearest == frames_.end() || std::abs(nearest->first - frame.stamp) > kTolerance) return detections;
+  if (nearest == frames_.end() || std::abs(nearest->first - stamp) > kTolerance) return detections;
   const cv::Mat& picture = frame.colour.empty() ? frame.depth : frame.colour;
   const cv::Rect2f whole(0.0f, 0.0f, static_cast<float>(picture.cols), static_cast<float>(picture.rows));
   for (Detection detection : nearest->second) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -103,7 +104,8 @@ std::vector<fs::path> text_files(const fs::path& folder) {
 // The names of class numbers: a file that the configuration names, or the one that lies in the folder.
 class ClassNumbers {
  public:
-  ClassNumbers(const fs::path& folder, const std::string& named) {
+  ClassNumbers(const fs::path& folder, const std::string& named, const std::vector<std::string>& rename) {
+    for (const std::string& pair : rename) renamed_.insert(pair.substr(0, pair.find('=')));
     if (!named.empty()) {
       file_ = named;
     } else if (fs::exists(folder / "classes.txt")) {
@@ -116,7 +118,8 @@ class ClassNumbers {
     if (!file_.empty()) names_ = read_class_names(file_);
   }
   std::string name(const fs::path& file, int line, const std::string& word) const {
-    if (!is_number(word)) return word;
+    // A number that is renamed needs no name before.
+    if (!is_number(word) || renamed_.contains(word)) return word;
     if (file_.empty()) {
       throw Error(file, line,
                   "class " + word + " has no name; expected mapper.detect.names, or classes.txt or a .names file beside the boxes");
@@ -133,6 +136,7 @@ class ClassNumbers {
  private:
   fs::path file_;
   std::vector<std::string> names_;
+  std::set<std::string> renamed_;
 };
 
 Detection read_row(const fs::path& file, const TextLine& row, const ClassNumbers& classes) {
@@ -156,8 +160,9 @@ Detection read_row(const fs::path& file, const TextLine& row, const ClassNumbers
           static_cast<float>(score)};
 }
 
-FrameBoxes read_folder(const fs::path& folder, const std::string& names) {
-  const ClassNumbers classes(folder, names);
+FrameBoxes read_folder(const fs::path& folder, const DetectConfig& config) {
+  const std::string& names = config.names;
+  const ClassNumbers classes(folder, names, config.rename);
   FrameBoxes boxes;
   for (const fs::path& file : text_files(folder)) {
     const std::string stem = file.stem().string();
@@ -201,7 +206,7 @@ bool is_boxes(const fs::path& path) {
 
 FrameBoxes read_boxes(const fs::path& path, const DetectConfig& config) {
   if (!fs::exists(path)) throw Error(path, "no such file or folder with boxes");
-  FrameBoxes boxes = fs::is_directory(path) ? read_folder(path, config.names) : read_json(path);
+  FrameBoxes boxes = fs::is_directory(path) ? read_folder(path, config) : read_json(path);
   apply_names(boxes, config);
   return boxes;
 }

@@ -1,4 +1,5 @@
 // A ROS 1 bag as a recording. Compiled where librosbag-storage and tf2 were found.
+#include <console_bridge/console.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/serialization.h>
 #include <rosbag/bag.h>
@@ -60,6 +61,9 @@ auto guarded(const fs::path& file, const F& work) -> decltype(work()) {
     return work();
   } catch (const rosbag::BagUnindexedException&) {
     throw Error(file, "has no index, as after a recording that was cut off; expected an indexed bag (rosbag reindex makes one)");
+  } catch (const rosbag::BagIOException& e) {
+    throw Error(file, "ends too early or cannot be read (" + std::string(e.what()) +
+                          "); expected a whole ROS 1 bag (rosbag reindex mends one that was cut off)");
   } catch (const ros::Exception& e) {
     throw Error(file, "is no ROS 1 bag that can be read: " + std::string(e.what()));
   } catch (const std::bad_alloc&) {
@@ -122,14 +126,16 @@ class Topics {
   }
 
   // The topic that the key names, or the only candidate; empty where there is none and none is asked for.
+  // What `preset` names is only preferred.
   std::string choose(const std::string& key, const std::string& named, const std::set<std::string>& types,
-                     const std::vector<std::string>& candidates) const {
+                     const std::vector<std::string>& candidates, const std::string& preset = "") const {
     if (!named.empty()) {
       // A preset's raw topic may have been recorded compressed alone.
       for (const char* suffix : {"", "/compressed", "/compressedDepth"}) {
         const auto found = types_.find(named + suffix);
         if (found != types_.end() && types.count(found->second) > 0) return found->first;
       }
+      if (named == preset) return choose(key, "", types, candidates);
       const auto found = types_.find(named);
       throw Error(file_, "recording.bag." + key + ": the topic " + named +
                              (found == types_.end() ? " is not in the bag" : " holds " + found->second) + "; expected " + list(types) +
@@ -175,6 +181,13 @@ class BagReader {
                   "holds neither pictures with depth nor scans; expected topics of sensor_msgs/Image or sensor_msgs/LaserScan");
     }
     mount_sensors();
+    for (const auto& [what, topic] : {std::pair{"pictures", colour_topic_},
+                                      {"depth", depth_topic_},
+                                      {"own images of the depth camera", native_topic_},
+                                      {"scans", laser_topic_},
+                                      {"odometry", odometry_topic_}}) {
+      if (!topic.empty()) contents_.sources.push_back(std::string(what) + ": " + topic);
+    }
     contents_.laser_rate_hz = rate_of(contents_.scans);
     contents_.rate_hz = rate_of(contents_.frames);
     return std::move(contents_);
@@ -183,9 +196,11 @@ class BagReader {
  private:
   void choose_topics() {
     const RosBagConfig& names = config_.bag;
-    std::vector<std::string> colours, depths;
+    const RosBagConfig preset = RosBagConfig::of_preset(names.preset);
+    std::vector<std::string> colours, depths, others;
     for (const std::string& name : topics_.of({kImage, kCompressed})) {
-      switch (kind_of(name)) {
+      std::string encoding;
+      switch (kind_of(name, encoding)) {
         case Kind::kColour:
           colours.push_back(name);
           break;
@@ -193,41 +208,66 @@ class BagReader {
           depths.push_back(name);
           break;
         case Kind::kOther:
+          others.push_back(name + " (" + encoding + ")");
           break;
       }
     }
-    colour_topic_ = topics_.choose("colour_topic", names.colour_topic, {kImage, kCompressed}, without_twins(colours));
-    depth_topic_ = topics_.choose("depth_topic", names.depth_topic, {kImage, kCompressed}, registered_ones(without_twins(depths)));
-    std::vector<std::string> natives = without_twins(depths);
-    erase_if(natives, [&](const std::string& name) { return name == depth_topic_; });
-    if (natives.size() == 1 || !names.native_depth_topic.empty()) {
-      native_topic_ = topics_.choose("native_depth_topic", names.native_depth_topic, {kImage, kCompressed}, natives);
-      native_info_topic_ = info_beside(native_topic_);
-    }
+    colour_topic_ = topics_.choose("colour_topic", names.colour_topic, {kImage, kCompressed}, without_twins(colours), preset.colour_topic);
+    depth_topic_ =
+        topics_.choose("depth_topic", names.depth_topic, {kImage, kCompressed}, registered_ones(without_twins(depths)), preset.depth_topic);
     laser_topic_ = topics_.choose("laser_topic", names.laser_topic, {kLaserScan}, topics_.of({kLaserScan}));
     odometry_topic_ = topics_.choose("odometry_topic", names.odometry_topic, {kOdometry}, topics_.of({kOdometry}));
+    if (colour_topic_.empty() && !depth_topic_.empty()) {
+      std::string there;
+      for (const std::string& other : others) there += (there.empty() ? "" : ", ") + other;
+      throw Error(bag_->file(), "holds depth (" + depth_topic_ +
+                                    ") but no picture that is read; expected bgr8, rgb8, bgra8, rgba8, mono8 or "
+                                    "compressed ones (there " +
+                                    (others.size() == 1 ? "is " : "are ") + (there.empty() ? "none" : there) + ")");
+    }
     if (colour_topic_.empty()) return;
     if (depth_topic_ == colour_topic_)
       throw Error(bag_->file(), "recording.bag.depth_topic is the colour topic, " + colour_topic_ + "; expected depth");
-    if (depth_topic_.empty())
-      throw Error(bag_->file(), "holds pictures (" + colour_topic_ + ") but no depth; expected recording.bag.depth_topic");
+    if (depth_topic_.empty()) {
+      if (laser_topic_.empty())
+        throw Error(bag_->file(), "holds pictures (" + colour_topic_ + ") but no depth; expected recording.bag.depth_topic");
+      contents_.remarks.push_back("pictures (" + colour_topic_ + ") are left out: the bag holds no depth");
+      colour_topic_.clear();
+      return;
+    }
+    choose_native_topic(without_twins(depths));
     std::vector<std::string> infos = topics_.of({kCameraInfo});
     const std::string beside = info_beside(colour_topic_);
-    if (topics_.has(beside)) infos = {beside};
-    info_topic_ = topics_.choose("colour_info_topic", names.colour_info_topic, {kCameraInfo}, infos);
-    if (info_topic_.empty() && config_.intrinsics.empty()) {
+    if (std::find(infos.begin(), infos.end(), beside) != infos.end()) infos = {beside};
+    info_topic_ = topics_.choose("colour_info_topic", names.colour_info_topic, {kCameraInfo}, infos, preset.colour_info_topic);
+    if (info_topic_.empty() && config_.intrinsics.empty() && !has_calibration_beside()) {
       throw Error(bag_->file(), "holds no sensor_msgs/CameraInfo; expected one, recording.intrinsics, or a recording.yaml beside the bag");
     }
+    depth_info_topic_ = info_beside(depth_topic_);
+  }
+
+  // The depth camera's own images are of the same device as the pictures: /front/camera/depth/.. goes with /front/camera/rgb/..
+  void choose_native_topic(std::vector<std::string> depths) {
+    const std::string& named = config_.bag.native_depth_topic;
+    if (named == "none") return;
+    const auto device = [](const std::string& topic) {
+      const std::string camera = info_beside(topic);
+      return camera.substr(0, camera.rfind('/', camera.rfind('/') - 1));
+    };
+    erase_if(depths, [&](const std::string& name) { return name == depth_topic_ || device(name) != device(colour_topic_); });
+    if (depths.size() != 1 && named.empty()) return;
+    native_topic_ = topics_.choose("native_depth_topic", named, {kImage, kCompressed}, depths);
+    native_info_topic_ = info_beside(native_topic_);
   }
 
   enum class Kind { kColour, kDepth, kOther };
 
   // By the first message's encoding.
-  Kind kind_of(const std::string& topic) const {
+  Kind kind_of(const std::string& topic, std::string& encoding) const {
     rosbag::View view(bag_->bag(), rosbag::TopicQuery(topic));
     if (view.size() == 0) return Kind::kOther;
     if (topics_.type(topic) == kImage) {
-      const std::string encoding = bag_->read<sensor_msgs::Image>(*view.begin())->encoding;
+      encoding = bag_->read<sensor_msgs::Image>(*view.begin())->encoding;
       return is_depth_encoding(encoding) ? Kind::kDepth : is_colour_encoding(encoding) ? Kind::kColour : Kind::kOther;
     }
     const std::string format = bag_->read<sensor_msgs::CompressedImage>(*view.begin())->format;
@@ -269,8 +309,7 @@ class BagReader {
   }
 
   void read_messages() {
-    // Only what the clocks differ by matters here: the frame as a whole is shifted later, by the colour picture's.
-    const Stamp depth_delay = from_seconds(config_.clock.depth_s - config_.clock.colour_s);
+    const Stamp delay = depth_delay(config_);
     for (const rosbag::MessageInstance& instance : view_) {
       const std::string& topic = instance.getTopic();
       if (topic == colour_topic_) {
@@ -278,16 +317,19 @@ class BagReader {
         if (camera_frame_.empty()) camera_frame_ = frame_name(header.frame_id);
         colours_.push_back({stamp_of_time(header.stamp), std::make_shared<const rosbag::MessageInstance>(instance)});
       } else if (topic == depth_topic_) {
-        depths_.push_back(
-            {stamp_of_time(header_of(instance).stamp) + depth_delay, std::make_shared<const rosbag::MessageInstance>(instance)});
-      } else if (topic == native_topic_) {
         const std_msgs::Header header = header_of(instance);
         if (depth_frame_.empty()) depth_frame_ = frame_name(header.frame_id);
-        natives_.push_back({stamp_of_time(header.stamp) + depth_delay, std::make_shared<const rosbag::MessageInstance>(instance)});
+        depths_.push_back({stamp_of_time(header.stamp) + delay, std::make_shared<const rosbag::MessageInstance>(instance)});
+      } else if (topic == native_topic_) {
+        const std_msgs::Header header = header_of(instance);
+        if (native_frame_.empty()) native_frame_ = frame_name(header.frame_id);
+        natives_.push_back({stamp_of_time(header.stamp) + delay, std::make_shared<const rosbag::MessageInstance>(instance)});
       } else if (topic == native_info_topic_) {
         if (!native_info_) native_info_ = *bag_->read<sensor_msgs::CameraInfo>(instance);
+      } else if (topic == depth_info_topic_ && topic != info_topic_) {
+        if (!depth_info_) depth_info_ = *bag_->read<sensor_msgs::CameraInfo>(instance);
       } else if (topic == info_topic_) {
-        if (contents_.intrinsics.empty()) take_info(*bag_->read<sensor_msgs::CameraInfo>(instance));
+        if (!first_info_) take_info(*(first_info_ = *bag_->read<sensor_msgs::CameraInfo>(instance)));
       } else if (topic == laser_topic_) {
         take_scan(*bag_->read<sensor_msgs::LaserScan>(instance));
       } else if (topic == odometry_topic_) {
@@ -312,8 +354,14 @@ class BagReader {
   }
 
   void take_info(const sensor_msgs::CameraInfo& info) {
+    const auto finite = [](const auto& numbers) {
+      return std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
+    };
+    if (!finite(info.K) || !finite(info.D) || !finite(info.P)) {
+      throw Error(bag_->file(), info_topic_ + ": holds numbers that are not finite; expected a calibrated camera");
+    }
     if (!(info.K[0] > 0.0 && info.K[4] > 0.0)) {
-      if (config_.intrinsics.empty()) {
+      if (config_.intrinsics.empty() && !has_calibration_beside()) {
         throw Error(bag_->file(), info_topic_ + ": says a focal length of " + std::to_string(info.K[0]) +
                                       "; expected a calibrated camera, or recording.intrinsics");
       }
@@ -345,6 +393,11 @@ class BagReader {
 
   void take_scan(const sensor_msgs::LaserScan& message) {
     if (laser_frame_.empty()) laser_frame_ = frame_name(message.header.frame_id);
+    if (!std::isfinite(message.angle_min) || !std::isfinite(message.angle_increment) || !(message.time_increment >= 0.0f) ||
+        !(message.time_increment < 10.0f)) {
+      ++bad_scans_;
+      return;
+    }
     LaserScan scan;
     scan.stamp = stamp_of_time(message.header.stamp);
     scan.sensor = "laser";
@@ -355,7 +408,7 @@ class BagReader {
     scan.range_max = static_cast<double>(message.range_max);
     scan.ranges = message.ranges;
     for (float& range : scan.ranges) {
-      if (!(range >= message.range_min && range <= message.range_max)) range = 0.0f;
+      if (!(range >= message.range_min && range <= message.range_max) || !std::isfinite(range)) range = 0.0f;
     }
     contents_.scans.push_back(std::move(scan));
   }
@@ -391,13 +444,20 @@ class BagReader {
     for (geometry_msgs::TransformStamped& t : transforms) {
       t.header.frame_id = frame_name(t.header.frame_id);
       t.child_frame_id = frame_name(t.child_frame_id);
-      try {
-        tf_.setTransform(t, "bag", fixed);
-      } catch (const tf2::TransformException&) {
+      const auto& p = t.transform.translation;
+      const auto& q = t.transform.rotation;
+      const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+      if (!std::isfinite(p.x + p.y + p.z) || !(std::abs(norm - 1.0) < 0.01)) {
         ++bad_transforms_;
+        continue;
       }
+      t.header.stamp = tf_time(t.header.stamp);
+      tf_.setTransform(t, "bag", fixed);  // false for one that was there before
     }
   }
+
+  // Time 0 means "the latest" to tf.
+  static ros::Time tf_time(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
 
   // In order of stamps; of one stamp the first.
   template <class T>
@@ -434,6 +494,7 @@ class BagReader {
     }
     remark_unpaired(contents_, colours_.size(), depths_.size(), config_.association_s);
     if (bad_readings_ > 0) contents_.remarks.push_back(std::to_string(bad_readings_) + " odometry readings are no poses and are left out");
+    if (bad_scans_ > 0) contents_.remarks.push_back(std::to_string(bad_scans_) + " scans name no angles and are left out");
     if (bad_transforms_ > 0) contents_.remarks.push_back(std::to_string(bad_transforms_) + " transforms are none and are left out");
   }
 
@@ -473,15 +534,17 @@ class BagReader {
       return found;
     };
     if (!contents_.frames.empty()) contents_.X_BC = mount(camera_frame_, config_.camera_mount, "camera");
+    expect_registered_depth();
     see_native_depth();
     if (contents_.has_laser) contents_.X_BL = mount(laser_frame_, config_.laser_mount, "laser");
     if (config_.bag.world_frame.empty()) return;
     std::size_t unknown = 0;
     for (RecordedFrame& frame : contents_.frames) {
-      const ros::Time time(static_cast<std::uint32_t>(frame.stamp / kNanosecondsPerSecond),
-                           static_cast<std::uint32_t>(frame.stamp % kNanosecondsPerSecond));
+      const Stamp stamp = frame.stamp + from_seconds(config_.clock.colour_s);  // as tf's clock has it
+      const ros::Time time(static_cast<std::uint32_t>(stamp / kNanosecondsPerSecond),
+                           static_cast<std::uint32_t>(stamp % kNanosecondsPerSecond));
       try {
-        frame.X_WC = pose_of(tf_.lookupTransform(frame_name(config_.bag.world_frame), camera_frame_, time).transform);
+        frame.X_WC = pose_of(tf_.lookupTransform(frame_name(config_.bag.world_frame), camera_frame_, tf_time(time)).transform);
       } catch (const tf2::TransformException&) {
         ++unknown;
       }
@@ -490,13 +553,33 @@ class BagReader {
       throw Error(bag_->file(), "tf says of no frame where the camera (frame '" + camera_frame_ + "') is in the world (frame '" +
                                     config_.bag.world_frame + "'); expected recording.bag.world_frame to be one that tf knows");
     }
-    erase_if(contents_.frames, [](const RecordedFrame& f) { return !f.X_WC; });
-    contents_.lost_frames = static_cast<int>(unknown);
+    if (unknown > 0) contents_.remarks.push_back(std::to_string(unknown) + " frames have no pose in tf");
+  }
+
+  // Depth of another view than the picture's would be mapped beside the objects.
+  void expect_registered_depth() const {
+    if (config_.bag.registered == "yes" || contents_.frames.empty()) return;
+    const std::string expected = "; expected the topic of depth that is registered to the picture, or recording.bag.registered=yes";
+    const std::optional<Pose> X_BD = on_vehicle(depth_frame_), X_BC = on_vehicle(camera_frame_);
+    constexpr double kSame_m = 1e-4, kSame_rad = 1e-3;
+    if (X_BD && X_BC) {
+      const Pose X_CD = X_BC->inverse() * *X_BD;
+      if (X_CD.translation().norm() > kSame_m || std::abs(Eigen::AngleAxisd(X_CD.linear()).angle()) > kSame_rad) {
+        throw Error(bag_->file(), depth_topic_ + " is in frame '" + depth_frame_ +
+                                      "', which is not where the picture's camera is (frame '" + camera_frame_ + "')" + expected);
+      }
+    }
+    if (!depth_info_ || !first_info_) return;
+    for (const std::size_t i : {0u, 2u, 4u, 5u}) {
+      if (std::abs(depth_info_->K[i] - first_info_->K[i]) <= 0.01 * std::abs(first_info_->K[i]) + 0.5) continue;
+      throw Error(bag_->file(), depth_topic_ + " is taken with another lens than " + colour_topic_ + " (camera_info's K: " +
+                                    std::to_string(depth_info_->K[i]) + " and " + std::to_string(first_info_->K[i]) + ")" + expected);
+    }
   }
 
   // The depth camera's own view, where its lens and its place are known; without them its images are of no use.
   void see_native_depth() {
-    const std::optional<Pose> X_BD = on_vehicle(depth_frame_), X_BC = on_vehicle(camera_frame_);
+    const std::optional<Pose> X_BD = on_vehicle(native_frame_), X_BC = on_vehicle(camera_frame_);
     const std::optional<Distortion> distortion = native_info_ ? distortion_of(*native_info_) : std::nullopt;
     if (X_BD && X_BC && distortion && native_info_->K[0] > 0.0 && native_info_->K[4] > 0.0) {
       const auto& k = native_info_->K;
@@ -526,17 +609,21 @@ class BagReader {
   std::shared_ptr<OpenBag> bag_;
   rosbag::View view_;
   Topics topics_;
-  std::string colour_topic_, depth_topic_, native_topic_, info_topic_, native_info_topic_, laser_topic_, odometry_topic_;
-  std::string camera_frame_, depth_frame_, laser_frame_;
-  std::optional<sensor_msgs::CameraInfo> native_info_;
+  std::string colour_topic_, depth_topic_, native_topic_, info_topic_, depth_info_topic_, native_info_topic_, laser_topic_, odometry_topic_;
+  std::string camera_frame_, depth_frame_, native_frame_, laser_frame_;
+  std::optional<sensor_msgs::CameraInfo> first_info_, depth_info_, native_info_;
   std::vector<Picture> colours_, depths_, natives_;
   tf2::BufferCore tf_{ros::Duration(1e6)};  // nothing is forgotten
-  std::size_t bad_readings_ = 0, bad_transforms_ = 0;
+  std::size_t bad_readings_ = 0, bad_scans_ = 0, bad_transforms_ = 0;
   RecordingContents contents_;
 };
 
 }  // namespace
 
-RecordingContents read_ros_bag(const fs::path& file, const RecordingConfig& config) { return BagReader(file, config).read(); }
+RecordingContents read_ros_bag(const fs::path& file, const RecordingConfig& config) {
+  // What the libraries would print is said in errors and remarks.
+  console_bridge::noOutputHandler();
+  return BagReader(file, config).read();
+}
 
 }  // namespace waretwin

@@ -49,7 +49,7 @@ struct RecordingContents {
   Eigen::Vector3d up_W = Eigen::Vector3d::UnitZ();
 
   int lost_frames = 0;
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks, sources;
 };
 
 // `calibration` (recording.yaml) wins over what the layout says, `config` over both.

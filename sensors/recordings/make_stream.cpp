@@ -13,12 +13,17 @@ namespace {
 
 class RecordedStream final : public Recording {
  public:
-  RecordedStream(StreamInfo info, std::vector<SensorEvent> events, int lost_frames, std::vector<std::string> remarks)
-      : info_(std::move(info)), events_(std::move(events)), lost_frames_(lost_frames), remarks_(std::move(remarks)) {}
+  RecordedStream(StreamInfo info, std::vector<SensorEvent> events, const RecordingContents& contents)
+      : info_(std::move(info)),
+        events_(std::move(events)),
+        lost_frames_(contents.lost_frames),
+        remarks_(contents.remarks),
+        sources_(contents.sources) {}
 
   const StreamInfo& info() const override { return info_; }
   int lost_frames() const override { return lost_frames_; }
   const std::vector<std::string>& remarks() const override { return remarks_; }
+  const std::vector<std::string>& sources() const override { return sources_; }
   std::optional<SensorEvent> next() override {
     if (next_ == events_.size()) return std::nullopt;
     // Each event is handed out once.
@@ -30,7 +35,7 @@ class RecordedStream final : public Recording {
   std::vector<SensorEvent> events_;
   std::size_t next_ = 0;
   int lost_frames_ = 0;
-  std::vector<std::string> remarks_;
+  std::vector<std::string> remarks_, sources_;
 };
 
 Eigen::Vector3d direction(const std::vector<double>& n) { return Eigen::Vector3d(n[0], n[1], n[2]).normalized(); }
@@ -79,8 +84,13 @@ CameraSetup camera_setup(const RecordingContents& contents, const RecordingConfi
   Pose X_BC = known ? pose_from_numbers(known->X_BC) : contents.X_BC.value_or(Pose::Identity());
   if (turns != 0) X_BC = X_BC * turned.X_CT;
   camera.X_BC = config.camera_mount.empty() ? X_BC : mount_of(config.camera_mount).X_BC();
-  camera.depth_min_m = known ? known->depth_min_m : config.depth_min_m;
-  camera.depth_max_m = known ? known->depth_max_m : config.depth_max_m;
+  const RecordingCalibration::Camera usual;
+  camera.depth_min_m = config.depth_min_m > 0.0 ? config.depth_min_m : (known ? *known : usual).depth_min_m;
+  camera.depth_max_m = config.depth_max_m > 0.0 ? config.depth_max_m : (known ? *known : usual).depth_max_m;
+  if (camera.depth_max_m <= camera.depth_min_m) {
+    throw Error(source + ": depth is trusted from " + std::to_string(camera.depth_min_m) + " to " + std::to_string(camera.depth_max_m) +
+                " m; expected depth_max_m above depth_min_m");
+  }
   camera.rate_hz = known ? known->rate_hz : contents.rate_hz;
 
   if (known && known->has_native) {
@@ -128,7 +138,10 @@ void add_frames(const RecordingContents& contents, const RecordingConfig& config
 void shift(std::vector<SensorEvent>& events, const ClockOffsets& clock) {
   const Stamp colour = from_seconds(clock.colour_s), laser = from_seconds(clock.laser_s), odometry = from_seconds(clock.odometry_s);
   for (SensorEvent& event : events) {
-    if (auto* frame = std::get_if<RgbdFrame>(&event)) frame->stamp += colour;
+    if (auto* frame = std::get_if<RgbdFrame>(&event)) {
+      if (colour != 0) frame->named_stamp = frame->stamp;
+      frame->stamp += colour;
+    }
     if (auto* scan = std::get_if<LaserScan>(&event)) scan->stamp += laser;
     if (auto* reading = std::get_if<OdometryReading>(&event)) reading->stamp += odometry;
   }
@@ -170,7 +183,7 @@ std::unique_ptr<Recording> make_stream(RecordingContents contents, const std::op
   shift(events, config.clock);
   std::stable_sort(events.begin(), events.end(), [](const SensorEvent& a, const SensorEvent& b) { return stamp_of(a) < stamp_of(b); });
   if (!events.empty()) info.duration_s = to_seconds(stamp_of(events.back()) - stamp_of(events.front()));
-  return std::make_unique<RecordedStream>(std::move(info), std::move(events), contents.lost_frames, std::move(contents.remarks));
+  return std::make_unique<RecordedStream>(std::move(info), std::move(events), contents);
 }
 
 }  // namespace waretwin

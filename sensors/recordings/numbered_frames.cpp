@@ -45,7 +45,14 @@ FrameStamps::FrameStamps(const fs::path& folder, double rate_hz) : file_(folder 
 }
 
 Stamp FrameStamps::of(std::int64_t number) const {
-  if (!exact()) return static_cast<Stamp>(std::llround(static_cast<double>(number) / rate_hz_ * 1e9));
+  if (!exact()) {
+    const double seconds = static_cast<double>(number) / rate_hz_;
+    constexpr double kMost = 4.5e9;
+    if (!(seconds <= kMost))
+      throw Error("frame " + std::to_string(number) + " at " + std::to_string(rate_hz_) +
+                  " Hz is no time; expected recording.frame_rate_hz to be greater");
+    return static_cast<Stamp>(std::llround(seconds * 1e9));
+  }
   const auto found = stamps_.find(number);
   if (found == stamps_.end())
     throw Error(file_, "has no stamp for frame " + std::to_string(number) + "; expected one for each or no such file");

@@ -27,7 +27,8 @@ std::optional<RecordingContents> read_pictures(const fs::path& folder, const Rec
 void add_native_depth(const fs::path& folder, const RecordingConfig& config, RecordingContents& contents) {
   const fs::path list = folder / "depth_native.txt";
   if (!fs::exists(list)) return;
-  const std::vector<StampedFile> natives = read_file_list(list);
+  std::vector<StampedFile> natives = read_file_list(list);
+  for (StampedFile& native : natives) native.stamp += depth_delay(config);
   if (!natives.empty()) contents.native_list = list.filename().string();
   for (RecordedFrame& frame : contents.frames) {
     if (natives.empty()) break;
@@ -37,8 +38,9 @@ void add_native_depth(const fs::path& folder, const RecordingConfig& config, Rec
 }
 
 RecordingContents read_folder(const fs::path& folder, const RecordingConfig& config) {
-  if (const std::optional<fs::path> bag = bag_in(folder)) return read_ros_bag(*bag, config);
   std::optional<RecordingContents> pictures = read_pictures(folder, config);
+  // Datasets ship a bag beside their pictures: the pictures are then the recording.
+  if (const std::optional<fs::path> bag = pictures ? std::nullopt : bag_in(folder)) return read_ros_bag(*bag, config);
   const fs::path laser_file = folder / "laser.txt", odometry_file = folder / "odometry.txt";
   if (!pictures && !fs::exists(laser_file)) {
     throw Error(folder,

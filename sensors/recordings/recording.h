@@ -38,7 +38,7 @@
 
 namespace waretwin {
 
-// Seconds that are added to a sensor's stamps: by how much its clock is behind the others'.
+// Seconds that are added to a sensor's stamps: by how much its clock is behind the others'. Recorded poses are by the right clock.
 struct ClockOffsets {
   double colour_s = 0.0, depth_s = 0.0, laser_s = 0.0, odometry_s = 0.0;
   void visit(Fields& f);
@@ -53,9 +53,9 @@ struct RecordingConfig {
   std::vector<double> laser_mount;   // vehicle, and of the laser; empty: the recording's, else at its base
   std::vector<double> intrinsics;    // fx, fy, cx, cy in pixels in place of the recording's own; empty: the recording's
   int rotate_deg = 0;  // clockwise turn that makes the pictures upright, of a camera that is mounted otherwise: 0, 90, 180 or 270
-  double depth_min_m = 0.4, depth_max_m = 5.0;
-  double depth_scale = 0.0;           // units of a 16-bit depth image in one metre; 0: 1000, for tum 5000
-  std::vector<double> depth_invalid;  // units that mean "nothing measured", beside 0 and 65535
+  double depth_min_m = 0.0, depth_max_m = 0.0;  // depth outside is not trusted; 0: the recording's, else 0.4 and 5
+  double depth_scale = 0.0;                     // units of a 16-bit depth image in one metre; 0: 1000, for tum 5000
+  std::vector<double> depth_invalid;            // units that mean "nothing measured", beside 0 and 65535
   double frame_rate_hz = 30.0;
   double association_s = 0.02;
   ClockOffsets clock;
@@ -69,6 +69,8 @@ class Recording : public SensorStream {
   virtual int lost_frames() const = 0;
   // What else was left out or mended on the way in (pictures without depth, stamps out of order), a sentence each.
   virtual const std::vector<std::string>& remarks() const = 0;
+  // Which of a bag's topics are what, a line each; empty for other recordings.
+  virtual const std::vector<std::string>& sources() const = 0;
 };
 
 // Whether a path is a file that open_recording takes for a CARMEN log: .log, .log.gz, .clf or .clf.gz.

@@ -42,9 +42,9 @@ void RecordingConfig::visit(Fields& f) {
   visit_some(f, "intrinsics", intrinsics, 4, "fx, fy, cx, cy in pixels; empty = the recording's own", "fx, fy, cx, cy");
   f("rotate_deg", rotate_deg, "clockwise turn that makes the pictures upright: 0, 90, 180, 270", {.min = 0, .max = 270});
   if (rotate_deg % 90 != 0) f.reject("rotate_deg", "is " + std::to_string(rotate_deg) + "; expected 0, 90, 180 or 270");
-  f("depth_min_m", depth_min_m, "nearer depth is not trusted", {.min = 0, .max = 100});
-  f("depth_max_m", depth_max_m, "farther depth is not trusted", {.min = 0, .max = 100});
-  if (depth_max_m <= depth_min_m) f.reject("depth_max_m", "must be greater than depth_min_m");
+  f("depth_min_m", depth_min_m, "nearer depth is not trusted; 0 = the recording's, else 0.4", {.min = 0, .max = 100});
+  f("depth_max_m", depth_max_m, "farther depth is not trusted; 0 = the recording's, else 5", {.min = 0, .max = 100});
+  if (depth_max_m > 0.0 && depth_max_m <= depth_min_m) f.reject("depth_max_m", "must be greater than depth_min_m");
   f("depth_scale", depth_scale, "units of a 16-bit depth image in one metre; 0 = as the layout says", {.min = 0, .max = 1e6});
   f("depth_invalid", depth_invalid, "units of a 16-bit depth image that mean nothing was measured, beside 0 and 65535");
   f("frame_rate_hz", frame_rate_hz, "frames a second, where frames are numbered", {.min = 0.001, .max = 10000});

@@ -12,7 +12,7 @@ namespace waretwin {
 
 // Whether a path is a file called .bag.
 bool is_ros_bag(const std::filesystem::path& file);
-// The bag of a folder that holds one and no other recording's pictures; nothing where there is none. Throws Error where there are several.
+// The bag of a folder that holds one; nothing where there is none. Throws Error where there are several.
 std::optional<std::filesystem::path> bag_in(const std::filesystem::path& folder);
 
 // Topics by RosBagConfig:

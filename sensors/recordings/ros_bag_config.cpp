@@ -2,10 +2,7 @@
 
 namespace waretwin {
 
-namespace {
-
-// The topics and frames of a preset; what is empty is found by type.
-RosBagConfig preset_of(const std::string& name) {
+RosBagConfig RosBagConfig::of_preset(const std::string& name) {
   RosBagConfig config;
   config.preset = name;
   if (name == "agiprobot") {
@@ -21,17 +18,15 @@ RosBagConfig preset_of(const std::string& name) {
   return config;
 }
 
-}  // namespace
-
 void RosBagConfig::visit(Fields& f) {
   const std::string before = preset;
   f("preset", preset, "topics of a known robot or driver, before the keys below", {.choices = {"auto", "agiprobot", "azure_kinect"}});
-  if (preset != before) *this = preset_of(preset);
+  if (preset != before) *this = of_preset(preset);
   f("colour_topic", colour_topic, "sensor_msgs/Image or CompressedImage; empty = the only one with colours");
   f("colour_info_topic", colour_info_topic, "sensor_msgs/CameraInfo; empty = the one beside the colour topic, else the only one");
   f("depth_topic", depth_topic, "depth registered to the colour picture; empty = the only one, or the only one whose name says so");
   f("native_depth_topic", native_depth_topic,
-    "the depth camera's own images, before they were registered; empty = the only other depth topic");
+    "the depth camera's own images, before they were registered; none, or empty = the only other depth topic of the same device");
   f("laser_topic", laser_topic, "sensor_msgs/LaserScan; empty = the only one");
   f("odometry_topic", odometry_topic, "nav_msgs/Odometry; empty = the only one");
   f("base_frame", base_frame, "the vehicle's frame in tf");
@@ -40,6 +35,8 @@ void RosBagConfig::visit(Fields& f) {
   f("laser_frame", laser_frame, "the laser's frame in tf; empty = the messages' own");
   f("rectified", rectified, "whether the pictures are without the distortion that camera_info names; auto = by the topic's name",
     {.choices = {"auto", "yes", "no"}});
+  f("registered", registered, "whether depth is in the colour picture's view; auto = refused where camera_info or tf say that it is not",
+    {.choices = {"auto", "yes"}});
 }
 
 void RosBagFormat::visit(Fields& f) {

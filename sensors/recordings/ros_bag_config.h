@@ -12,7 +12,9 @@ struct RosBagConfig {
   // driver; auto: whatever topic is the only one of its type (for depth: of those registered to the colour picture).
   std::string preset = "auto";
   // Empty: found by type.
-  std::string colour_topic, colour_info_topic, depth_topic, native_depth_topic, laser_topic, odometry_topic;
+  std::string colour_topic, colour_info_topic, depth_topic, laser_topic, odometry_topic;
+  // The depth camera's own images; "none": not read, empty: the only other depth topic of the same device.
+  std::string native_depth_topic;
   std::string base_frame = "base_link";
   // Where tf says how the vehicle stands in this frame, recorded poses come from it (--poses recorded); empty: none.
   std::string world_frame;
@@ -20,6 +22,10 @@ struct RosBagConfig {
   std::string camera_frame, laser_frame;
   // Whether pictures are distorted as camera_info says: auto = unless the topic's name says "rect".
   std::string rectified = "auto";
+  // Whether depth is in the colour picture's view: auto = unless camera_info or tf say otherwise (then it is refused).
+  std::string registered = "auto";
+  // Topics that a preset names are taken where the bag has them.
+  static RosBagConfig of_preset(const std::string& name);
   void visit(Fields& f);
 };
 

@@ -48,6 +48,10 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_by_stamp(const std::vecto
   return pairs;
 }
 
+// What is added to stamps of depth images before they are paired: only what the clocks differ by matters there, for the frame as a whole is
+// shifted later, by the colour picture's.
+inline Stamp depth_delay(const RecordingConfig& config) { return from_seconds(config.clock.depth_s - config.clock.colour_s); }
+
 // Says how many pictures stayed without a partner.
 void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size_t depths, double tolerance_s);
 

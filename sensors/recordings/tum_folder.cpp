@@ -79,14 +79,13 @@ RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig&
   }
   const std::vector<StampedFile> colours = read_file_list(folder / "rgb.txt");
   std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
-  // Only what the clocks differ by matters here: the frame as a whole is shifted later, by the colour picture's.
-  for (StampedFile& depth : depths) depth.stamp += from_seconds(config.clock.depth_s - config.clock.colour_s);
+  for (StampedFile& depth : depths) depth.stamp += depth_delay(config);
   std::vector<StampedPose> poses;
   if (fs::exists(folder / "groundtruth.txt")) poses = read_trajectory(folder / "groundtruth.txt");
   const Stamp tolerance = from_seconds(config.association_s);
   for (const auto& [colour, depth] : pairs_by_stamp(colours, depths, tolerance)) {
     RecordedFrame frame{colours[colour].stamp, depths[depth].stamp, stored_colour(colours[colour].file), stored_depth(depths[depth].file)};
-    frame.X_WC = pose_at(poses, frame.stamp, tolerance);
+    frame.X_WC = pose_at(poses, frame.stamp + from_seconds(config.clock.colour_s), tolerance);
     contents.frames.push_back(std::move(frame));
   }
   if (contents.frames.empty()) {

@@ -34,8 +34,8 @@ TEST(ExternalMapper, ItsCuboidsAndTrajectoryAreScored) {
   // A mapper that knows it all: it leaves the truth of another recording of the same hall.
   const fs::path drive = folder.path() / "drive", out = folder.path() / "out with space";
   ASSERT_EQ(test::waretwin("record " + agiprobot() + " --quiet --frames 3 --out " + in_quotes(drive)).exit_code, 0);
-  const std::string mapper = "echo working >&2; ls {recording}; cp \"" + (drive / "truth.json").string() + "\" {out}/cuboids.json; cp \"" +
-                             (drive / "trajectory_truth.tum").string() + "\" {out}/trajectory.tum";
+  const std::string mapper = "echo working >&2; ls {recording}; ls {recording}/../..; cp \"" + (drive / "truth.json").string() +
+                             "\" {out}/cuboids.json; cp \"" + (drive / "trajectory_truth.tum").string() + "\" {out}/trajectory.tum";
   const auto result = run(out, mapper);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json score = Json::parse(read_file(out / "score.json"));
@@ -53,7 +53,7 @@ TEST(ExternalMapper, ItsCuboidsAndTrajectoryAreScored) {
   // What it was given holds nothing of the truth.
   const std::string given = read_file(out / "mapper/stdout.log");
   EXPECT_NE(given.find("rgb.txt"), std::string::npos);
-  for (const char* word : {"truth", "config", "boxes", "xml"}) EXPECT_EQ(given.find(word), std::string::npos) << given;
+  for (const char* word : {"truth", "boxes", "xml", "score"}) EXPECT_EQ(given.find(word), std::string::npos) << given;
   EXPECT_FALSE(fs::exists(out / "mapper/recording")) << "taken away, as nobody asked for it";
 
   // A gate judges it as any run, and the configuration repeats it.
@@ -106,6 +106,14 @@ TEST(ExternalMapper, ItsFailuresAreToldAndScoreNothing) {
 
   EXPECT_ONE_LINE(run(out, "echo {recording} {out}"), "cuboids.json");
   EXPECT_ONE_LINE(run(out, "echo {recording} {out}; echo '{}' > {out}/cuboids.json"), "objects");
+  // A trajectory of another time costs the trajectory's score alone.
+  const auto other =
+      run(out, "echo {recording}; echo '{\"objects\":[]}' > {out}/cuboids.json; echo '1e9 0 0 0 0 0 0 1' > {out}/trajectory.tum");
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_TRUE(Json::parse(read_file(out / "score.json"))["trajectory"].is_null());
+  EXPECT_ONE_LINE(run(out, "my_mapper {recording} {out}", "--budget"), "--budget");
+  EXPECT_ONE_LINE(test::waretwin("map " + in_quotes(out / "mapper/recording") + " --out " + in_quotes(out / "mapper/recording")),
+                  "recording.yaml");
   EXPECT_ONE_LINE(run(out, "my_mapper {recording}"), "{out}");
   EXPECT_ONE_LINE(run(out, "my_mapper {recording} {out} {boxes}"), "--detector truth");
   EXPECT_ONE_LINE(run(out, "my_mapper {recording} {out}", "--detector yolo"), "--detector yolo");

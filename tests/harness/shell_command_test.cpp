@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "core/error.h"
 #include "core/files.h"
 #include "tests/support/expect_error.h"
@@ -25,7 +27,6 @@ TEST_F(Shell, KeepsBothOutputsAndTheExitCode) {
   EXPECT_FALSE(result.timed_out);
   EXPECT_EQ(text("out"), "to out\n") << "and its input is empty";
   EXPECT_EQ(text("err"), "to err\n");
-  EXPECT_GT(result.peak_rss_mb, 0.1);
   EXPECT_EQ(run("no_such_program_anywhere").exit_code, 127);
   EXPECT_EQ(run("kill -9 $$").exit_code, 128 + 9);
   EXPECT_ERROR(run_shell("true", folder_.path() / "none/out", folder_.path() / "err", 0.0), "none/out", "cannot be written");
@@ -39,6 +40,28 @@ TEST_F(Shell, EndsWhatTakesTooLongWithAllItsChildren) {
   EXPECT_LT(result.wall_s, 10.0);
   EXPECT_EQ(run("sleep 1.2").exit_code, 0);
   EXPECT_EQ(text("err"), "");
+}
+
+// The command's own memory, not that of the program that started it.
+TEST_F(Shell, MeasuresTimeAndMemoryOfTheCommand) {
+  const std::vector<char> ours(200 << 20, 'x');
+  const ShellResult small = run("sleep 0.2");
+  EXPECT_GE(small.wall_s, 0.2);
+  EXPECT_GT(small.peak_rss_mb, 0.1);
+  EXPECT_LT(small.peak_rss_mb, 50.0) << ours.size();
+  EXPECT_GT(run("x=$(head -c 60000000 /dev/zero | tr '\\0' a); sleep 0.3").peak_rss_mb, 55.0);
+}
+
+TEST_F(Shell, EndsThoughTheSignalOfItsEndIsIgnored) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  EXPECT_EQ(run("exit 4").exit_code, 4);
+  EXPECT_EQ(std::signal(SIGCHLD, before), SIG_IGN) << "left as it was";
+}
+
+TEST_F(Shell, PlaceholdersBecomeWordsInOrOutOfQuotes) {
+  const std::map<std::string, std::string> words = {{"{in}", "it's \"a\" $path"}, {"{out}", "b"}};
+  EXPECT_EQ(run(with_words("printf '%s|' {in} \"{in}/x\" '{in}' --o={out} \\\"{out}", words)).exit_code, 0);
+  EXPECT_EQ(text("out"), "it's \"a\" $path|it's \"a\" $path/x|it's \"a\" $path|--o=b|\"b|");
 }
 
 TEST_F(Shell, EndsItWhenTheCallerGivesUp) {

@@ -78,6 +78,9 @@ TEST_F(BoxFolder, NamesAreTheConfigurations) {
   EXPECT_EQ(read_boxes(path(), config).at(7'000'000'000)[1].class_name, "conveyor");
   write("boxes.json", R"({"frames": [{"stamp": 1, "detections": [{"class": "a", "box": [1, 2, 3, 4]}]}]})");
   config = {};
+  config.rename = {"0=x", "1=belt"};
+  std::filesystem::remove(path() / "mine.names");
+  EXPECT_EQ(read_boxes(path(), config).at(7'000'000'000)[1].class_name, "belt") << "numbers by themselves";
   config.rename = {"a=b"};
   EXPECT_EQ(read_boxes(path() / "boxes.json", config).at(1)[0].class_name, "b");
 }

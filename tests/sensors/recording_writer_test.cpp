@@ -213,6 +213,24 @@ TEST_P(RecordingFormat, CarriesPosesWhereTheLayoutHasThem) {
   }
 }
 
+// What the user says goes over recording.yaml.
+TEST_P(RecordingFormat, TrustedDepthIsTheRecordingsUnlessToldOtherwise) {
+  const test::TemporaryFolder folder;
+  const auto writer = make_recording_writer(GetParam(), folder.path(), odd_stream(), "a test");
+  writer->add(frame_of(0));
+  writer->finish();
+  RecordingConfig config;
+  const auto range = [&] {
+    const StreamInfo::Camera& camera = open_recording(folder.path(), config)->info().cameras.at("front");
+    return std::pair(camera.depth_min_m, camera.depth_max_m);
+  };
+  EXPECT_EQ(range(), std::pair(0.5, 3.86));
+  config.depth_max_m = 9;
+  EXPECT_EQ(range(), std::pair(0.5, 9.0));
+  config.depth_max_m = 0.4;
+  EXPECT_ERROR(range(), "depth_max_m above depth_min_m");
+}
+
 TEST(RecordingWriter, UnknownFormatsAreRefused) {
   const test::TemporaryFolder folder;
   EXPECT_ERROR(make_recording_writer("rosbag2", folder.path(), odd_stream(), "a test"), "rosbag2", "tum, 7scenes, scenenn or rosbag");
