@@ -19,7 +19,7 @@ class TruthAssociator : public Associator {
   ~TruthAssociator() override;
   std::vector<int> associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context, ObjectList& map) override;
   std::vector<std::pair<int, int>> take_merges() override;
-  void finish(ObjectList& map) override;
+  void finish(ObjectList& map, const TsdfVolume& volume) override;
 
  private:
   struct Track;
