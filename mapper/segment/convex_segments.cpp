@@ -87,8 +87,10 @@ class Surface {
     const std::size_t i = at(u, v);
     const auto margin = static_cast<float>(config_.concave_margin_m), least = static_cast<float>(config_.min_convexity);
     return any_around(u, v, config_.convexity_window_px / 2, [&](std::size_t j) {
-      // Beyond a step lies another surface: how it is turned says nothing about a corner.
-      return has_normal(j) && normals_[i].dot(normals_[j]) < least && before_plane(i, j) > margin && !step_between(i, j);
+      if (!has_normal(j) || normals_[i].dot(normals_[j]) >= least) return false;
+      // Which of both planes lies before the other's point, on the whole: fitted normals turn before the edge does, and by one plane alone
+      // a convex edge would look concave from there.
+      return (points_[j] - points_[i]).dot(normals_[i] - normals_[j]) > margin;
     });
   }
 

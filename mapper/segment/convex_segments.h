@@ -17,10 +17,11 @@ struct ConvexSegments {
   std::vector<std::int32_t> labels;  // row by row: 1 to count in the order of their first pixels, 0 = in no segment
 };
 
-// A pixel is an edge where a neighbour lies before its plane and is turned away from it (a concave corner), or where a direct neighbour
-// lies off its plane (a step). What is connected without edges is a segment; small ones are dropped, and edge pixels are given back to the
-// nearest segment unless a step lies between. Distances across the plane and not along the ray decide about steps, so that a floor seen
-// flat is none. `depth` in metres (CV_32FC1), 0 = invalid; outside (depth_min, depth_max] is nothing. The same at any thread count.
+// A pixel is an edge where a neighbour is turned against it in a concave way (each of both lies before the other's plane, on the whole), or
+// where a direct neighbour lies off its plane (a step). What is connected without edges is a segment; small ones are dropped, and edge
+// pixels are given back to the nearest segment unless a step lies between. Distances across the plane and not along the ray decide about
+// steps, so that a floor seen flat is none. `depth` in metres (CV_32FC1), 0 = invalid; outside [depth_min, depth_max] is nothing. The same
+// at any thread count.
 ConvexSegments find_convex_segments(const cv::Mat& depth, const Intrinsics& intrinsics, double depth_min, double depth_max,
                                     const GeometricConfig& config);
 

@@ -37,7 +37,7 @@ std::vector<std::int32_t> spread(const ConvexSegments& segments, const cv::Mat& 
 }
 
 // The detection whose box, as its mask, holds the segment; -1 = background.
-int detection_of(const std::vector<int>& pixels, int width, const std::vector<Detection>& detections, double share) {
+int detection_of(const std::vector<int>& pixels, int width, const std::vector<Detection>& detections, const GeometricConfig& config) {
   int best = -1;
   for (std::size_t k = 0; k < detections.size(); ++k) {
     const cv::Rect2f& box = detections[k].box;
@@ -45,7 +45,8 @@ int detection_of(const std::vector<int>& pixels, int width, const std::vector<De
     const auto inside = std::count_if(pixels.begin(), pixels.end(), [&](int pixel) {
       return box.contains(cv::Point2f(static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f));
     });
-    if (static_cast<double>(inside) >= share * static_cast<double>(pixels.size())) best = static_cast<int>(k);
+    const bool held = static_cast<double>(inside) >= config.box_share * static_cast<double>(pixels.size());
+    if (held && static_cast<double>(inside) >= config.min_box_fill * box.area()) best = static_cast<int>(k);
   }
   return best;
 }
@@ -80,7 +81,7 @@ Segmentation GeometricSegmenter::segment(const RgbdFrame& frame, const Intrinsic
   Segmentation result;
   std::set<int> found;
   for (SegmentedObject& object : objects) {
-    object.detection_index = detection_of(object.pixels, intrinsics.width, detections, geometric_.box_share);
+    object.detection_index = detection_of(object.pixels, intrinsics.width, detections, geometric_);
     if (object.detection_index >= 0) {
       object.detection = detections[static_cast<std::size_t>(object.detection_index)];
       found.insert(object.detection_index);

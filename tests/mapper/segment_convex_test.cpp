@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
-#include <tuple>
+#include <set>
 
 #include "core/parallel.h"
 #include "mapper/segment/convex_segments.h"
@@ -121,7 +121,7 @@ TEST(ConvexSegments, SmallOnesAreDroppedAndEdgesGivenBack) {
   const auto labelled = [](const ConvexSegments& s) { return s.labels.size() - std::count(s.labels.begin(), s.labels.end(), 0); };
   EXPECT_GT(labelled(segments), labelled(bare));
   for (std::size_t i = 0; i < bare.labels.size(); ++i) {
-    if (bare.labels[i] != 0) ASSERT_EQ(segments.labels[i], bare.labels[i]);
+    ASSERT_TRUE(bare.labels[i] == 0 || bare.labels[i] == segments.labels[i]);
   }
 }
 

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include "mapper/segment/geometric_segmenter.h"
 #include "tests/mapper/traced_frame.h"
@@ -59,6 +61,22 @@ TEST(GeometricSegmenter, ASegmentThatReachesOutOfTheBoxIsBackground) {
   for (const SegmentedObject& object : strict.objects) EXPECT_EQ(object.detection_index, -1);
   const Segmentation lax = segment(traced.frame, {{"crate", half, 0.5f}}, 0.3);
   EXPECT_TRUE(lax.rejected.empty());
+}
+
+TEST(GeometricSegmenter, AScrapInTheBoxIsBackground) {
+  const test::TracedFrame traced = test::trace(kScene, kView, kCamera);
+  const cv::Rect2f both = *traced.boxes[0] | *traced.boxes[1];
+  // The first box of the scene fills about a fifth of the rectangle around both.
+  for (const auto& [fill, named] : {std::pair{0.0, true}, {0.05, true}, {0.5, false}}) {
+    GeometricConfig config;
+    config.thin = 1;
+    config.min_box_fill = fill;
+    const Segmentation result = GeometricSegmenter(SegmentConfig{}, config, test::kinect_stream(kView))
+                                    .segment(traced.frame, kView, {{"pair", both, 1.0f}}, kCamera);
+    const bool any = std::any_of(result.objects.begin(), result.objects.end(), [](const auto& o) { return o.detection_index == 0; });
+    EXPECT_EQ(any, named) << fill;
+    EXPECT_EQ(result.rejected.empty(), named) << fill;
+  }
 }
 
 TEST(GeometricSegmenter, OfSeveralBoxesTheSmallestHoldsTheSegment) {
