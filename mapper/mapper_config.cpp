@@ -27,7 +27,7 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     config.segments.merging_min_frame_count = 3;
     // Ours: a box, unlike a mask, also shows what stands behind and beside (docs/voxbloxpp.md).
     config.segments.background_factor = 1.0;
-    config.geometric.min_box_fill = 0.1;
+    config.geometric.min_box_fill = 0.03;
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper, best or voxbloxpp");
