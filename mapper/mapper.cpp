@@ -89,9 +89,9 @@ void Mapper::consume(SensorEvent event) {
 }
 
 ObjectMap Mapper::finish() {
-  stages_.associator->finish(map_.objects);
   if (map_.volume) {
-    for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
+    stages_.associator->finish(map_.objects, *map_.volume);
+    map_.volume->merge_labels(stages_.associator->take_merges());
   }
   return std::exchange(map_, ObjectMap{});
 }
@@ -157,9 +157,10 @@ void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport rep
                                       .intrinsics = intrinsics,
                                       .depth = frame.depth,
                                       .detections = detections,
-                                      .tells_nothing = segmentation.tells_nothing};
-  const std::vector<int> map_ids = stages_.associator->associate(segmentation.objects, context, map_.objects);
-  for (const auto& [old_id, new_id] : stages_.associator->take_merges()) map_.volume->merge_labels(old_id, new_id);
+                                      .tells_nothing = segmentation.tells_nothing,
+                                      .volume = map_.volume.get()};
+  std::vector<int> map_ids = stages_.associator->associate(segmentation.objects, context, map_.objects);
+  map_.volume->merge_labels(stages_.associator->take_merges());
   report.associate_ms = watch.lap();
 
   stages_.integrator->integrate(frame, intrinsics,
@@ -171,6 +172,7 @@ void Mapper::map_frame(const RgbdFrame& frame, const Pose& X_WC, FrameReport rep
   report.segmented = static_cast<int>(segmentation.objects.size());
   for (const auto& [reason, count] : segmentation.rejected) map_.rejected[reason] += count;
   map_.frames.push_back(report);
+  for (int& id : map_ids) id = stages_.associator->object_of(id);
   if (on_frame) on_frame({frame, X_WC, detections, segmentation, map_ids});
 }
 

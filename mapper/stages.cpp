@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "mapper/associate/evidence_associator.h"
 #include "mapper/associate/paper_associator.h"
+#include "mapper/associate/segment_associator.h"
 #include "mapper/detect/boxes_detector.h"
 #include "mapper/detect/shipped_models.h"
 #include "mapper/detect/yolo_detector.h"
@@ -14,6 +15,7 @@
 #include "mapper/localise/local_map_localiser.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/segment/evidence_segmenter.h"
+#include "mapper/segment/geometric_segmenter.h"
 #include "mapper/segment/paper_segmenter.h"
 
 namespace waretwin {
@@ -58,6 +60,7 @@ std::unique_ptr<Detector> make_detector(const MapperConfig& config) {
 
 std::unique_ptr<Associator> make_associator(const MapperConfig& config) {
   if (config.objects == "evidence") return std::make_unique<EvidenceAssociator>(config.evidence);
+  if (config.objects == "segments") return std::make_unique<SegmentAssociator>(config.segments);
   return std::make_unique<PaperAssociator>(config.associate);
 }
 
@@ -72,6 +75,8 @@ Stages make_stages(const MapperConfig& config, const StreamInfo& info) {
   stages.detector = make_detector(config);
   if (config.objects == "evidence") {
     stages.segmenter = std::make_unique<EvidenceSegmenter>(config.segment, config.rays, info);
+  } else if (config.objects == "segments") {
+    stages.segmenter = std::make_unique<GeometricSegmenter>(config.segment, config.geometric, info);
   } else {
     stages.segmenter = std::make_unique<PaperSegmenter>(config.segment, info);
   }

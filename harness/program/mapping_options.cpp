@@ -7,13 +7,16 @@
 namespace waretwin {
 
 void MappingOptions::add_to(CLI::App& command, const std::string& detector_help) {
-  command.add_option("--profile", profile, "best: ours; paper: the published method with its constants")
+  command
+      .add_option("--profile", profile,
+                  "best: ours; paper: the published method with its constants; voxbloxpp: geometric segments in the volume, which the "
+                  "paper compares with")
       ->capture_default_str()
-      ->check(CLI::IsMember({"best", "paper"}));
+      ->check(CLI::IsMember({"best", "paper", "voxbloxpp"}));
   command.add_option("--detector", detector, detector_help)->type_name("WHAT");
   command
       .add_option("--rate", rate_hz,
-                  "frames mapped a second, those in between are dropped; 0 = every frame (default: 1 for paper, 0 for best)")
+                  "frames mapped a second, those in between are dropped; 0 = every frame (default: 1 for paper and voxbloxpp, 0 for best)")
       ->type_name("HZ")
       ->check(number_from_to(0.0, 1000.0));
   command.add_option("--frames", frames, "stops after N camera frames (0: all)")

@@ -50,7 +50,7 @@ std::optional<std::string> detector_beside(const std::optional<std::string>& nam
 }
 
 void RunChoice::visit(Fields& f) {
-  f("profile", profile, "of the mapper", {.choices = {"best", "paper"}});
+  f("profile", profile, "of the mapper", {.choices = {"best", "paper", "voxbloxpp"}});
   std::string named = detector.value_or("");
   f("detector", named, "as for run --detector; empty: the shipped model");
   detector = named.empty() ? std::nullopt : std::optional(named);

@@ -18,6 +18,8 @@ MapperConfig always(MapperConfig config) {
   config.associate.min_iou_3d = -1.0;
   config.evidence.min_overlap = -1.0;
   config.evidence.min_presence = 0.0;  // a track only hears of the frames that show its object
+  // Segments are found again in a volume that they labelled, here true ids label it: their points are accumulated instead.
+  if (config.objects == "segments") config.objects = "points";
   return config;
 }
 
@@ -75,11 +77,11 @@ std::vector<int> TruthAssociator::associate(const std::vector<SegmentedObject>& 
 
 std::vector<std::pair<int, int>> TruthAssociator::take_merges() { return std::exchange(merges_, {}); }
 
-void TruthAssociator::finish(ObjectList& map) {
+void TruthAssociator::finish(ObjectList& map, const TsdfVolume& volume) {
   for (auto& [id, track] : tracks_) {
     const auto mapped = std::find_if(map.begin(), map.end(), [id = id](const MappedObject& m) { return m.id == id; });
     if (mapped == map.end()) continue;
-    track->update->finish(track->object);
+    track->update->finish(track->object, volume);
     if (track->object.empty()) {
       merges_.emplace_back(id, 0);
       map.erase(mapped);

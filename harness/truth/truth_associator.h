@@ -11,7 +11,8 @@
 namespace waretwin {
 
 // A segmented object belongs to the true object of its detection's class that most of its pixels show. Where none shows any, it belongs
-// to none. Points and cuboid are updated as the mapper's own associator does it.
+// to none. Points and cuboid are updated as the mapper's own associator does it; profile voxbloxpp's as profile paper does (points are
+// accumulated), since its own way is to find segments again by labels that here are true ids.
 class TruthAssociator : public Associator {
  public:
   // The stream must outlive the associator; its newest frame is the one that is associated.
@@ -19,7 +20,7 @@ class TruthAssociator : public Associator {
   ~TruthAssociator() override;
   std::vector<int> associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context, ObjectList& map) override;
   std::vector<std::pair<int, int>> take_merges() override;
-  void finish(ObjectList& map) override;
+  void finish(ObjectList& map, const TsdfVolume& volume) override;
 
  private:
   struct Track;

@@ -332,7 +332,7 @@ void EvidenceAssociator::drop_doubles(ObjectList& map) {
   }
 }
 
-void EvidenceAssociator::finish(ObjectList& map) {
+void EvidenceAssociator::finish(ObjectList& map, const TsdfVolume&) {
   adopt(map);
   for (MappedObject& mapped : map) shape(mapped, tracks_.at(mapped.id));
   merge_overlapping(map);

@@ -24,7 +24,7 @@ class EvidenceAssociator : public Associator {
 
   std::vector<int> associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context, ObjectList& map) override;
   std::vector<std::pair<int, int>> take_merges() override;
-  void finish(ObjectList& map) override;
+  void finish(ObjectList& map, const TsdfVolume& volume) override;
 
  private:
   struct Track {

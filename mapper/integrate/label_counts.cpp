@@ -82,6 +82,18 @@ std::vector<std::pair<std::int32_t, std::uint32_t>> LabelCounts::all(int voxel) 
   return counts;
 }
 
+std::set<std::int32_t> LabelCounts::labels() const {
+  std::set<std::int32_t> found;
+  std::int32_t last = -1;
+  for (const Slot& slot : first_) {
+    if (slot.count == 0 || slot.label == last) continue;
+    last = slot.label;
+    found.insert(last);
+  }
+  for (const Entry& e : further_) found.insert(e.label);
+  return found;
+}
+
 void LabelCounts::merge(std::int32_t from, std::int32_t to) {
   WARETWIN_CHECK(from >= 0 && to >= 0, "no such label");
   if (from == to) return;

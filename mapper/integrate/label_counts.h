@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,9 @@ class LabelCounts {
 
   // All labels of a voxel with their counts, ascending by label.
   std::vector<std::pair<std::int32_t, std::uint32_t>> all(int voxel) const;
+
+  // All labels of all voxels.
+  std::set<std::int32_t> labels() const;
 
   // Adds the counts of label `from` to those of `to`, and forgets `from`.
   void merge(std::int32_t from, std::int32_t to);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -119,10 +120,21 @@ void TsdfVolume::configure(const TsdfConfig& config) {
   forgets_ = config.method == "projection" && config.projection.forget;
 }
 
-void TsdfVolume::merge_labels(std::int32_t from, std::int32_t to) {
+void TsdfVolume::merge_labels(std::int32_t from, std::int32_t to) { merge_labels(std::vector<std::pair<int, int>>{{from, to}}); }
+
+void TsdfVolume::merge_labels(const std::vector<std::pair<int, int>>& merges) {
+  if (merges.empty()) return;
   parallel_for(blocks_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      if (blocks_[b]->surface) blocks_[b]->surface->labels.merge(from, to);
+      if (!blocks_[b]->surface) continue;
+      LabelCounts& counts = blocks_[b]->surface->labels;
+      // A block holds few of all labels.
+      std::set<std::int32_t> present = counts.labels();
+      for (const auto& [from, to] : merges) {
+        if (from == to || present.erase(from) == 0) continue;
+        counts.merge(from, to);
+        present.insert(to);
+      }
     }
   });
 }

@@ -90,6 +90,8 @@ class TsdfVolume {
 
   // From now on, what was counted as `from` counts as `to` (objects that turned out to be one).
   void merge_labels(std::int32_t from, std::int32_t to);
+  // The same for a list of (from, to), one after the other, in one pass.
+  void merge_labels(const std::vector<std::pair<int, int>>& merges);
 
   // Fingerprint of every voxel and count, in sorted order of blocks.
   void add_to(Digest& digest) const;

@@ -36,6 +36,8 @@ struct SegmentedObject {
   Eigen::Vector3d rays_from_W = Eigen::Vector3d::Zero();
   std::optional<double> support_W = std::nullopt;
   double ground_W = 0.0;
+  // Profile voxbloxpp: which of the frame's detections the segment is part of; -1 = background, `detection` is then empty.
+  int detection_index = -1;
 };
 
 struct Segmentation {

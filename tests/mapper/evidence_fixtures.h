@@ -39,7 +39,7 @@ class EvidenceMapping {
   }
 
   const ObjectList& finish() {
-    associator_.finish(map);
+    associator_.finish(map, TsdfVolume(TsdfConfig{}));
     return map;
   }
   std::vector<std::pair<int, int>> take_merges() { return associator_.take_merges(); }

@@ -21,6 +21,26 @@ TEST(MapperConfig, PaperHasThePapersConstants) {
   EXPECT_EQ(paper.integrate.voxel_m, 0.02);         // section 4.2
 }
 
+// Those of the authors' published settings.
+TEST(MapperConfig, VoxbloxppHasItsAuthorsConstants) {
+  const MapperConfig config = MapperConfig::make("voxbloxpp");
+  EXPECT_EQ(config.objects, "segments");
+  EXPECT_EQ(config.integrate.method, "rays");
+  EXPECT_EQ(config.integrate.voxel_m, MapperConfig::make("paper").integrate.voxel_m);
+  EXPECT_EQ(config.rate_hz, 1.0);
+  EXPECT_EQ(config.geometric.min_convexity, 0.97);
+  EXPECT_EQ(config.geometric.discontinuity_share, 0.01);
+  EXPECT_EQ(config.segments.min_label_voxels, 20);
+  EXPECT_EQ(config.segments.merging_min_overlap_ratio, 0.15);
+  EXPECT_EQ(config.segments.merging_min_frame_count, 3);
+}
+
+TEST(MapperConfig, WindowsAreOdd) {
+  MapperConfig config = MapperConfig::make("voxbloxpp");
+  EXPECT_THROW(apply_settings({{"geometric.normal_window_px", "8"}}, [&](Fields& f) { config.visit(f); }), Error);
+  EXPECT_THROW(apply_settings({{"geometric.convexity_window_px", "4"}}, [&](Fields& f) { config.visit(f); }), Error);
+}
+
 TEST(MapperConfig, AProfileLeavesWhereBoxesAndPosesComeFrom) {
   MapperConfig config = MapperConfig::make("best");
   config.detector = "yolo";
@@ -58,7 +78,7 @@ TEST(MapperConfig, NamesTheProfilesItKnows) {
     MapperConfig::make("papr");
     FAIL() << "must throw";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("paper or best"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("paper, best or voxbloxpp"), std::string::npos);
   }
 }
 

@@ -1,0 +1,19 @@
+// The volume's surface as points by label: what there is of a mapped segment to put a box around.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "mapper/integrate/tsdf_volume.h"
+
+namespace waretwin {
+
+// One point (metres, W) where the distance between two neighbouring voxels passes 0, for the labels asked for: the label is L(v) of the
+// voxel nearer to the point. Ascending by blocks and voxels; distances farther apart than the truncation are where two views met, and make
+// none (as in mesher.h). The same at any number of threads.
+std::map<std::int32_t, std::vector<Eigen::Vector3f>> label_surface(const TsdfVolume& volume, const std::set<std::int32_t>& labels);
+
+}  // namespace waretwin
