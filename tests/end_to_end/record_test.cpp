@@ -244,6 +244,8 @@ TEST(Record, ReplacesOnlyWhatItMade) {
   EXPECT_FALSE(fs::exists(drive / "rgb/000001.png"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "nothing is left beside it";
   const std::string again = "record " + agiprobot() + " --quiet --frames 1 --out ";
+  EXPECT_ONE_LINE(test::waretwin("map " + in_quotes(drive) + " --out " + in_quotes(drive)), "recording.yaml");
+  EXPECT_TRUE(fs::exists(drive / "truth.json")) << "a map does not clean up in a recording";
   write_file(drive / "notes.txt", "mine");
   EXPECT_ONE_LINE(test::waretwin(again + in_quotes(drive)), "notes.txt");
   fs::remove(drive / "notes.txt");
