@@ -15,9 +15,9 @@
 #include "harness/report/page_json.h"
 #include "harness/report/page_mesh.h"
 #include "harness/report/run_facts.h"
-#include "harness/score/upright.h"
 #include "harness/score/table6.h"
 #include "harness/score/trajectory_file.h"
+#include "harness/score/upright.h"
 
 namespace waretwin {
 
