@@ -53,8 +53,9 @@ submit() { sbatch --parsable --cpus-per-task=1 --mem=0 --output="$folder/task-%a
 units() { ls array/units 2>/dev/null | grep -c '\.json$' || true; }
 
 job="$(submit --array=0-1 --no-requeue)"
-# Coverage of four candidates, then the drives of both tasks; the second task dies in the middle of one.
-wait_for "a drive" 60 sh -c '[ "$(ls array/units 2>/dev/null | grep -c "\.json$")" -ge 5 ]'
+# Coverage of four candidates, then the drives of both tasks; the second task dies in the middle of one. Of three drives that are done
+# one at least is its own: the two go at the same pace.
+wait_for "three drives" 90 sh -c '[ "$(ls array/units 2>/dev/null | grep -c "\.json$")" -ge 7 ]'
 victim="$(pgrep -f -- "--out array --shard 1/2" | head -n 1 || true)"
 [[ -n "$victim" ]] || fail "the second task was not there to be killed"
 kill -9 "$victim"
