@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "sensors/recordings/stamped_files.h"
 
 namespace waretwin {
 
@@ -26,11 +27,6 @@ double finite_number(const std::filesystem::path& file, int line, const std::str
   const double value = parse_text_number(file, line, word);
   if (!std::isfinite(value)) throw Error(file, line, shown(word) + " is not finite; expected a finite number");
   return value;
-}
-
-template <class T>
-void sort_by_stamp(std::vector<T>& values) {
-  std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
 }
 
 }  // namespace
