@@ -143,19 +143,23 @@ ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<
   return result;
 }
 
-std::string digest_of(const ObjectMap& map) {
-  Digest digest;
-  for (const ListedObject& object : listed(map.objects)) {
+void add_to(Digest& digest, const std::vector<ListedObject>& objects, const std::vector<StampedPose>& trajectory) {
+  for (const ListedObject& object : objects) {
     digest.add(object.id);
     digest.add(object.class_name);
     for (const Eigen::Vector3d& v : {object.cuboid.centre, object.cuboid.size}) digest.add_bytes(v.data(), 3 * sizeof(double));
     digest.add(object.cuboid.yaw);
   }
-  for (const TrajectoryPoint& point : map.trajectory) {
+  for (const StampedPose& point : trajectory) {
     digest.add(point.stamp);
     const Eigen::Matrix4d X = point.X_WB.matrix();
     digest.add_bytes(X.data(), 16 * sizeof(double));
   }
+}
+
+std::string digest_of(const ObjectMap& map) {
+  Digest digest;
+  add_to(digest, listed(map.objects), stamped(map.trajectory));
   if (map.volume) map.volume->add_to(digest);
   return digest.hex();
 }

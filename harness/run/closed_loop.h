@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/digest.h"
 #include "harness/pictures/map_pictures.h"
 #include "harness/run/mapping.h"
 #include "harness/run/run_config.h"
@@ -30,6 +31,9 @@ struct ClosedLoopResult {
 ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene,
                                  const std::function<void()>& ready = {},
                                  const std::function<void(double, const ObjectMap&)>& progress = {});
+
+// Objects and trajectory, as any run's digest begins.
+void add_to(Digest& digest, const std::vector<ListedObject>& objects, const std::vector<StampedPose>& trajectory);
 
 // Fingerprint of cuboids, trajectory and voxels: equal runs have equal ones, at any number of threads.
 std::string digest_of(const ObjectMap& map);

@@ -57,29 +57,15 @@ void make_empty(const fs::path& folder) {
   make_folder(folder);
 }
 
-std::string digest_of(const std::vector<ListedObject>& objects, const std::vector<StampedPose>& trajectory) {
-  Digest digest;
-  for (const ListedObject& object : objects) {
-    digest.add(object.id);
-    digest.add(object.class_name);
-    for (const Eigen::Vector3d& v : {object.cuboid.centre, object.cuboid.size}) digest.add_bytes(v.data(), 3 * sizeof(double));
-    digest.add(object.cuboid.yaw);
-  }
-  for (const StampedPose& point : trajectory) {
-    digest.add(point.stamp);
-    const Eigen::Matrix4d X = point.X_WB.matrix();
-    digest.add_bytes(X.data(), 16 * sizeof(double));
-  }
-  return digest.hex();
-}
-
 RunScore score_of(const RunConfig& config, const ShellResult& shell, const RecordedDrive& drive, const std::vector<ListedObject>& mapped,
                   const std::optional<Trajectory>& trajectory, const std::vector<std::pair<Pose, Pose>>& pairs) {
   RunScore score;
   score.scenario = config.scenario.name;
   score.profile = "mapper";
   score.seed = config.scenario.seed;
-  score.digest = digest_of(mapped, trajectory ? trajectory->poses : std::vector<StampedPose>());
+  Digest digest;
+  add_to(digest, mapped, trajectory ? trajectory->poses : std::vector<StampedPose>());
+  score.digest = digest.hex();
   score.stages = {{"detector", config.truth_stages.detector ? "truth" : "mapper"},
                   {"poses", config.truth_stages.poses ? "truth" : "mapper"},
                   {"association", "mapper"},

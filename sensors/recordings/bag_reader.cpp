@@ -96,10 +96,6 @@ class OpenBag {
   mutable std::mutex mutex_;
 };
 
-struct Topic {
-  std::string name, type;
-};
-
 // A picture's place in the bag.
 struct Picture {
   Stamp stamp = 0;
@@ -113,7 +109,6 @@ class Topics {
     for (const rosbag::ConnectionInfo* connection : view.getConnections()) types_[connection->topic] = connection->datatype;
   }
 
-  bool has(const std::string& name) const { return types_.count(name) > 0; }
   const std::string& type(const std::string& name) const { return types_.at(name); }
 
   // Those of the types, in order of their names.
