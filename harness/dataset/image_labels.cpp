@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "harness/truth/mask_codes.h"
+#include "harness/truth/mask_outlines.h"
+#include "mapper/detect/mask_runs.h"
 
 namespace waretwin {
 

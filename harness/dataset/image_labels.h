@@ -20,7 +20,7 @@ struct ImageLabel {
   double visible = 1.0, occluded = 0.0, truncated = 0.0;     // ObjectView
   cv::Rect amodal_box;                                       // reaches beyond the picture
   bool crosses_camera_plane = false, leaves_margin = false;  // ObjectView: there is more of it than these say
-  std::vector<std::vector<double>> polygons;                 // harness/truth/mask_codes.h
+  std::vector<std::vector<double>> polygons;                 // harness/truth/mask_outlines.h
   std::string runs;                                          // compressed
 };
 

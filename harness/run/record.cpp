@@ -56,7 +56,9 @@ class BoxesFile {
   void add(Stamp stamp, const std::vector<Detection>& detections) {
     nlohmann::json entry = {{"stamp", stamp}, {"detections", nlohmann::json::array()}};
     for (const Detection& d : detections) {
-      entry["detections"].push_back({{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}});
+      nlohmann::json& found = entry["detections"].emplace_back();
+      found = {{"class", d.class_name}, {"box", {d.box.x, d.box.y, d.box.width, d.box.height}}, {"score", d.score}};
+      if (!d.mask.empty()) found["mask"] = {{"size", {d.mask.size.height, d.mask.size.width}}, {"counts", compressed_runs(d.mask.runs)}};
     }
     file_.append((frames_++ == 0 ? "{\"frames\":[\n" : ",\n") + entry.dump());
   }

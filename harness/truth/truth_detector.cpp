@@ -28,6 +28,7 @@ void TruthDetectorConfig::visit(Fields& f) {
   f("min_depth_pixels", min_depth_pixels, "objects with fewer pixels that have depth get no box", {.min = 0, .max = 1e9});
   f("min_visible_share", min_visible_share,
     "visible box's area over the area of the whole object's box, parts beyond the picture included; below: no box", {.min = 0, .max = 1});
+  f("masks", masks, "each box comes with its object's visible pixels, which profile voxbloxpp takes in the box's place");
 }
 
 std::vector<Detection> boxes_from_instances(const cv::Mat& instances, const cv::Mat& depth, const std::vector<TrueObject>& objects,
@@ -45,7 +46,8 @@ std::vector<Detection> boxes_from_instances(const cv::Mat& instances, const cv::
     if (extent.pixels < config.min_pixels || with_depth[object.id].pixels < config.min_depth_pixels) continue;
     const cv::Rect2f box = extent.box();
     if (static_cast<double>(box.area()) < config.min_visible_share * projected_area(object.cuboid, intrinsics, X_WC)) continue;
-    detections.push_back({object.class_name, box, 1.0f});
+    Detection& detection = detections.emplace_back(Detection{object.class_name, box, 1.0f});
+    if (config.masks) detection.mask = {instances.size(), run_lengths(instances(box) == object.id, box, instances.size())};
   }
   return detections;
 }

@@ -11,10 +11,12 @@ struct TruthDetectorConfig {
   int min_pixels = 2000;           // of the object in the picture
   int min_depth_pixels = 200;      // of these, with depth
   double min_visible_share = 0.3;  // visible box's area over that of the whole object's box, parts beyond the picture included
+  bool masks = false;              // the visible pixels, too, as a faultless instance segmentation finds them
   void visit(Fields& f);
 };
 
-// One box per true object in view: the smallest one around its visible pixels, score 1, in order of ids. Only classes of the truth.
+// One box per true object in view: the smallest one around its visible pixels, score 1, in order of ids; with `masks`
+// those pixels, too. Only classes of the truth.
 class TruthDetector : public Detector {
  public:
   // The stream must outlive the detector; its newest frame is the one that is asked for.

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "harness/pictures/rasteriser.h"
-#include "harness/truth/mask_codes.h"
+#include "mapper/detect/mask_runs.h"
 
 namespace waretwin {
 

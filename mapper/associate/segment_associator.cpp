@@ -10,6 +10,15 @@
 #include "mapper/segment/cuboid_search.h"
 
 namespace waretwin {
+namespace {
+
+Eigen::AlignedBox3d box_around(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points) box.extend(p);
+  return box.cast<double>();
+}
+
+}  // namespace
 
 std::vector<int> SegmentAssociator::associate(const std::vector<SegmentedObject>& objects, const AssociationContext& context,
                                               ObjectList& map) {
@@ -25,6 +34,7 @@ std::vector<int> SegmentAssociator::associate(const std::vector<SegmentedObject>
     if (label == 0) label = next_id_++;
   }
   if (config_.merge) merge_segments(overlaps, labels);
+  for (std::size_t i = 0; i < objects.size(); ++i) extend(labels[i], box_around(objects[i].points_W));
   vote(objects, labels, context.frame_id);
   if (context.volume) list_objects(*context.volume, map);
   return labels;
@@ -48,6 +58,7 @@ void SegmentAssociator::adopt(const ObjectList& map) {
     if (mapped.id < next_id_) continue;
     next_id_ = mapped.id + 1;
     seen_[mapped.id] = mapped;
+    extend(mapped.id, box_around(mapped.points_W));
     seen_[mapped.id].points_W.clear();
     records_.see(mapped.id, mapped.id, mapped.class_name, std::max(1, mapped.observations));
   }
@@ -79,6 +90,8 @@ void SegmentAssociator::merge_segments(const std::vector<VoxelOverlap>& overlaps
 void SegmentAssociator::absorb(int gone, int stays, std::vector<int>& labels) {
   merges_.emplace_back(gone, stays);
   records_.merge(gone, stays);
+  extend(stays, extents_[gone]);
+  extents_.erase(gone);
   std::replace(labels.begin(), labels.end(), gone, stays);
   std::map<std::pair<int, int>, int> joined;
   for (const auto& [pair, frames] : joined_) {
@@ -123,8 +136,15 @@ void SegmentAssociator::vote(const std::vector<SegmentedObject>& objects, const 
 
 void SegmentAssociator::list_objects(const TsdfVolume& volume, ObjectList& map) {
   const std::map<int, std::vector<int>> instances = records_.instances();
-  std::set<std::int32_t> wanted;
-  for (const auto& [instance, segments] : instances) wanted.insert(segments.begin(), segments.end());
+  // An integrator counts a label this far from the points that have it, at most.
+  const double reach = volume.truncation_m() + 2.0 * volume.voxel_m();
+  std::map<std::int32_t, Eigen::AlignedBox3d> wanted;
+  for (const auto& [instance, segments] : instances) {
+    for (const int segment : segments) {
+      const Eigen::AlignedBox3d& points_W = extents_.at(segment);
+      wanted[segment] = {points_W.min().array() - reach, points_W.max().array() + reach};
+    }
+  }
   const auto surface = label_surface(volume, wanted);
   map.clear();
   listed_.clear();

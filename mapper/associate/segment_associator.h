@@ -2,6 +2,7 @@
 // an object is what the segments of one instance are together (Grinvald et al. 2019, sections III-C to III-E).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <set>
 #include <utility>
@@ -35,14 +36,17 @@ class SegmentAssociator : public Associator {
   void merge_segments(const std::vector<VoxelOverlap>& overlaps, std::vector<int>& labels);
   void absorb(int gone, int stays, std::vector<int>& labels);
   void vote(const std::vector<SegmentedObject>& objects, const std::vector<int>& labels, int frame_id);
+  // Where the volume may carry a label: around all points that were given it.
+  void extend(int label, const Eigen::AlignedBox3d& points_W) { extents_[label].extend(points_W); }
   void list_objects(const TsdfVolume& volume, ObjectList& map);
 
   SegmentsConfig config_;
   SegmentRecords records_;
   int next_id_ = 1;
-  std::map<std::pair<int, int>, int> joined_;  // frames that saw two mapped segments as one; smaller label first
-  std::map<int, MappedObject> seen_;           // by instance: all but class, points and cuboid
-  std::set<int> listed_;                       // instances in the map
+  std::map<std::pair<int, int>, int> joined_;   // frames that saw two mapped segments as one; smaller label first
+  std::map<int, MappedObject> seen_;            // by instance: all but class, points and cuboid
+  std::set<int> listed_;                        // instances in the map
+  std::map<int, Eigen::AlignedBox3d> extents_;  // by label, metres in W
   std::vector<std::pair<int, int>> merges_;
 };
 

@@ -2,6 +2,9 @@
 
 #include <cstdlib>
 #include <iterator>
+#include <string>
+
+#include "core/error.h"
 
 namespace waretwin {
 
@@ -9,9 +12,12 @@ namespace {
 
 constexpr Stamp kTolerance = 1'000'000;
 
+std::string size_text(const cv::Size& size) { return std::to_string(size.width) + " x " + std::to_string(size.height); }
+
 }  // namespace
 
-BoxesDetector::BoxesDetector(const std::filesystem::path& path, const DetectConfig& config) : frames_(read_boxes(path, config)) {}
+BoxesDetector::BoxesDetector(const std::filesystem::path& path, const DetectConfig& config)
+    : path_(path), frames_(read_boxes(path, config)) {}
 
 std::vector<Detection> BoxesDetector::detect(const RgbdFrame& frame) {
   const Stamp stamp = frame.named_stamp.value_or(frame.stamp);
@@ -25,6 +31,10 @@ std::vector<Detection> BoxesDetector::detect(const RgbdFrame& frame) {
   const cv::Mat& picture = frame.colour.empty() ? frame.depth : frame.colour;
   const cv::Rect2f whole(0.0f, 0.0f, static_cast<float>(picture.cols), static_cast<float>(picture.rows));
   for (Detection detection : nearest->second) {
+    if (!detection.mask.empty() && detection.mask.size != picture.size()) {
+      throw Error(path_, "a mask of " + size_text(detection.mask.size) + " pixels in a frame of " + size_text(picture.size()) +
+                             "; expected masks of the whole picture");
+    }
     detection.box &= whole;
     if (detection.box.width > 0.0f && detection.box.height > 0.0f) detections.push_back(std::move(detection));
   }

@@ -13,10 +13,11 @@ class BoxesDetector : public Detector {
  public:
   // Throws Error as read_boxes does.
   explicit BoxesDetector(const std::filesystem::path& path, const DetectConfig& config = {});
-  // Boxes are cut off at the picture's edges; those outside are dropped.
+  // Boxes are cut off at the picture's edges; those outside are dropped. Throws Error for a mask of another size than the picture's.
   std::vector<Detection> detect(const RgbdFrame& frame) override;
 
  private:
+  std::filesystem::path path_;
   FrameBoxes frames_;
 };
 

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kLargestCoordinate = 1e6;  // pixels
+constexpr int kLargestSide = 30'000;        // of a picture, pixels
 
 std::string shown(const json& value) { return value.dump().substr(0, 60); }
 
@@ -27,6 +28,40 @@ const json& member(const std::filesystem::path& file, const json& object, const 
   const auto found = object.find(key);
   if (found == object.end()) throw Error(file, where + " has no \"" + key + "\"");
   return *found;
+}
+
+std::vector<int> read_runs(const json& counts) {
+  if (counts.is_string()) return read_compressed_runs(counts.get_ref<const std::string&>());
+  std::vector<int> runs;
+  for (const json& count : counts) {
+    if (!count.is_number_integer() || count.get<std::int64_t>() < 0 || count.get<std::int64_t>() > kMostMaskPixels) {
+      throw Error("has a run of " + shown(count) + " pixels");
+    }
+    runs.push_back(count.get<int>());
+  }
+  return runs;
+}
+
+MaskRuns read_mask(const fs::path& file, const json& entry, const std::string& where) {
+  const json& size = member(file, entry, where, "size");
+  const auto side = [&](std::size_t i) {
+    const bool usable = size.is_array() && size.size() == 2 && size[i].is_number_integer() && size[i].get<std::int64_t>() >= 1 &&
+                        size[i].get<std::int64_t>() <= kLargestSide;
+    if (!usable) throw Error(file, where + ": size is " + shown(size) + "; expected [height, width] of the picture in pixels");
+    return size[i].get<int>();
+  };
+  MaskRuns mask{cv::Size(side(1), side(0)), {}};
+  const json& counts = member(file, entry, where, "counts");
+  if (!counts.is_string() && !counts.is_array()) {
+    throw Error(file, where + ": counts is " + shown(counts) + "; expected COCO's run lengths, as a text or a list");
+  }
+  try {
+    mask.runs = read_runs(counts);
+    expect_whole(mask);
+  } catch (const Error& error) {
+    throw Error(file, where + ": counts " + error.what());
+  }
+  return mask;
 }
 
 Detection read_detection(const std::filesystem::path& file, const json& entry, const std::string& where) {
@@ -54,6 +89,7 @@ Detection read_detection(const std::filesystem::path& file, const json& entry, c
     }
     detection.score = score->get<float>();
   }
+  if (const auto mask = entry.find("mask"); mask != entry.end()) detection.mask = read_mask(file, *mask, where + ".mask");
   return detection;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mapper/detect/mask_runs.h"
 #include "sensors/measurements.h"
 
 namespace waretwin {
@@ -13,6 +14,7 @@ struct Detection {
   std::string class_name;
   cv::Rect2f box;      // pixels of the colour image: pixel (u, v) covers [u, u + 1) x [v, v + 1); inside the image
   float score = 1.0f;  // [0, 1]
+  MaskRuns mask = {};  // of the colour image, empty where the detector finds boxes alone
 };
 
 class Detector {

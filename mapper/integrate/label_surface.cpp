@@ -1,5 +1,6 @@
 #include "mapper/integrate/label_surface.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -17,7 +18,33 @@ struct LabelledPoint {
   Eigen::Vector3f p_W;
 };
 
-void collect(const TsdfVolume& volume, const TsdfBlock& block, const std::set<std::int32_t>& labels, std::vector<LabelledPoint>& points) {
+struct WantedLabel {
+  std::int32_t label;
+  Eigen::AlignedBox3i blocks;
+};
+
+// The blocks that hold a wanted label, ascending.
+std::vector<std::size_t> blocks_of(const TsdfVolume& volume, const std::vector<WantedLabel>& wanted) {
+  std::vector<std::size_t> positions;
+  for (std::size_t position = 0; position < volume.size(); ++position) {
+    const TsdfBlock& block = volume.block(position);
+    if (!block.surface) continue;
+    if (std::any_of(wanted.begin(), wanted.end(), [&](const WantedLabel& w) { return w.blocks.contains(block.index); })) {
+      positions.push_back(position);
+    }
+  }
+  std::sort(positions.begin(), positions.end(), [&](std::size_t a, std::size_t b) {
+    const Eigen::Vector3i &ia = volume.block(a).index, &ib = volume.block(b).index;
+    return std::lexicographical_compare(ia.data(), ia.data() + 3, ib.data(), ib.data() + 3);
+  });
+  return positions;
+}
+
+void collect(const TsdfVolume& volume, const TsdfBlock& block, const std::vector<WantedLabel>& wanted, std::vector<LabelledPoint>& points) {
+  std::vector<std::int32_t> labels;  // few
+  for (const WantedLabel& w : wanted) {
+    if (w.blocks.contains(block.index)) labels.push_back(w.label);
+  }
   const std::array<const TsdfBlock*, 3> beyond = {volume.find_block(block.index + Eigen::Vector3i::UnitX()),
                                                   volume.find_block(block.index + Eigen::Vector3i::UnitY()),
                                                   volume.find_block(block.index + Eigen::Vector3i::UnitZ())};
@@ -36,7 +63,7 @@ void collect(const TsdfVolume& volume, const TsdfBlock& block, const std::set<st
       if ((here > 0.0f) == (there > 0.0f) || std::abs(here - there) > farthest) continue;
       const float share = here / (here - there);
       const std::int32_t label = share <= 0.5f ? block.surface->labels.best(offset) : other->surface->labels.best(place);
-      if (!labels.contains(label)) continue;
+      if (std::find(labels.begin(), labels.end(), label) == labels.end()) continue;
       Eigen::Vector3d p_W = volume.voxel_centre(TsdfVolume::kSide * block.index + local);
       p_W[axis] += share * volume.voxel_m();
       points.push_back({label, p_W.cast<float>()});
@@ -46,17 +73,20 @@ void collect(const TsdfVolume& volume, const TsdfBlock& block, const std::set<st
 
 }  // namespace
 
-std::map<std::int32_t, std::vector<Eigen::Vector3f>> label_surface(const TsdfVolume& volume, const std::set<std::int32_t>& labels) {
-  std::map<std::int32_t, std::vector<Eigen::Vector3f>> result;
-  if (labels.empty()) return result;
-  const std::vector<std::size_t> order = volume.sorted_positions();
+std::map<std::int32_t, std::vector<Eigen::Vector3f>> label_surface(const TsdfVolume& volume,
+                                                                   const std::map<std::int32_t, Eigen::AlignedBox3d>& labels) {
+  std::vector<WantedLabel> wanted;
+  for (const auto& [label, box] : labels) {
+    if (box.isEmpty()) continue;
+    wanted.push_back(
+        {label, Eigen::AlignedBox3i(TsdfVolume::block_of(volume.voxel_at(box.min())), TsdfVolume::block_of(volume.voxel_at(box.max())))});
+  }
+  const std::vector<std::size_t> order = blocks_of(volume, wanted);
   std::vector<std::vector<LabelledPoint>> pieces((order.size() + kBlocks - 1) / kBlocks);
   parallel_for(order.size(), kBlocks, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const TsdfBlock& block = volume.block(order[i]);
-      if (block.surface) collect(volume, block, labels, pieces[begin / kBlocks]);
-    }
+    for (std::size_t i = begin; i < end; ++i) collect(volume, volume.block(order[i]), wanted, pieces[begin / kBlocks]);
   });
+  std::map<std::int32_t, std::vector<Eigen::Vector3f>> result;
   for (const auto& piece : pieces) {
     for (const LabelledPoint& point : piece) result[point.label].push_back(point.p_W);
   }

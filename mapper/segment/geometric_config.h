@@ -19,8 +19,8 @@ struct GeometricConfig {
   double discontinuity_share = 0.01;  // theirs
   int min_segment_px = 200;           // theirs: 500
   int grow_px = 6;                    // as wide as both windows reach
-  double box_share = 0.8;
-  double min_box_fill = 0.0;  // masks need none; MapperConfig::make sets what boxes need
+  double box_share = 0.8;             // theirs, of masks
+  double min_box_fill = 0.0;          // masks need none; MapperConfig::make sets what boxes need
 
   void visit(Fields& f) {
     f("thin", thin, "segments are sought in every n-th row and column; the keys in px count these", {.min = 1, .max = 16});
@@ -36,9 +36,11 @@ struct GeometricConfig {
       "a direct neighbour farther from the pixel's plane than this share of the depth makes an edge", {.min = 0.0001, .max = 1});
     f("min_segment_px", min_segment_px, "fewest pixels of a segment", {.min = 1, .max = 1e7});
     f("grow_px", grow_px, "edge pixels up to this far from a segment are given to it", {.min = 0, .max = 100});
-    f("box_share", box_share, "share of a segment that must lie in a box to take its class; less is background", {.min = 0.01, .max = 1});
+    f("box_share", box_share, "share of a segment that must lie in a mask or box to take its class; less is background",
+      {.min = 0.01, .max = 1});
     f("min_box_fill", min_box_fill,
-      "share of a box's area that a segment must fill to take its class: scraps of what stands behind are seen through a box, not a mask",
+      "without a mask, the share of a box's area that a segment must fill to take its class: scraps of what stands behind are seen through "
+      "a box",
       {.min = 0, .max = 1});
     if (normal_window_px % 2 == 0) f.reject("normal_window_px", std::to_string(normal_window_px) + "; expected an odd number");
     if (convexity_window_px % 2 == 0) f.reject("convexity_window_px", std::to_string(convexity_window_px) + "; expected an odd number");

@@ -36,17 +36,42 @@ std::vector<std::int32_t> spread(const ConvexSegments& segments, const cv::Mat& 
   return labels;
 }
 
-// The detection whose box, as its mask, holds the segment; -1 = background.
-int detection_of(const std::vector<int>& pixels, int width, const std::vector<Detection>& detections, const GeometricConfig& config) {
+// The picture's pixels that a detection calls its object's.
+class Region {
+ public:
+  Region(const Detection& detection, const cv::Size& picture) : box_(detection.box) {
+    if (detection.mask.empty()) return;
+    WARETWIN_CHECK(detection.mask.size == picture, "a mask is one of the whole picture");
+    mask_ = mask_picture(detection.mask);
+  }
+  bool is_mask() const { return !mask_.empty(); }
+  double area() const { return box_.area(); }
+  bool holds(int u, int v) const {
+    if (is_mask()) return mask_.at<std::uint8_t>(v, u) != 0;
+    return box_.contains(cv::Point2f(static_cast<float>(u) + 0.5f, static_cast<float>(v) + 0.5f));
+  }
+
+ private:
+  cv::Rect2f box_;
+  cv::Mat mask_;  // empty: the box is all that is known
+};
+
+// The detection that holds the segment: the mask with most of its pixels, else the smallest box; -1 = background.
+int detection_of(const std::vector<int>& pixels, int width, const std::vector<Region>& regions, const GeometricConfig& config) {
   int best = -1;
-  for (std::size_t k = 0; k < detections.size(); ++k) {
-    const cv::Rect2f& box = detections[k].box;
-    if (best >= 0 && box.area() >= detections[static_cast<std::size_t>(best)].box.area()) continue;
-    const auto inside = std::count_if(pixels.begin(), pixels.end(), [&](int pixel) {
-      return box.contains(cv::Point2f(static_cast<float>(pixel % width) + 0.5f, static_cast<float>(pixel / width) + 0.5f));
-    });
-    const bool held = static_cast<double>(inside) >= config.box_share * static_cast<double>(pixels.size());
-    if (held && static_cast<double>(inside) >= config.min_box_fill * box.area()) best = static_cast<int>(k);
+  bool by_mask = false;
+  double rank = 0.0;  // the higher one wins
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    const Region& region = regions[k];
+    const auto inside = static_cast<double>(
+        std::count_if(pixels.begin(), pixels.end(), [&](int pixel) { return region.holds(pixel % width, pixel / width); }));
+    if (inside < config.box_share * static_cast<double>(pixels.size())) continue;
+    if (!region.is_mask() && inside < config.min_box_fill * region.area()) continue;
+    const double its_rank = region.is_mask() ? inside : -region.area();
+    if (best >= 0 && (by_mask != region.is_mask() ? by_mask : its_rank <= rank)) continue;
+    best = static_cast<int>(k);
+    by_mask = region.is_mask();
+    rank = its_rank;
   }
   return best;
 }
@@ -78,10 +103,12 @@ Segmentation GeometricSegmenter::segment(const RgbdFrame& frame, const Intrinsic
     object.points_W.push_back((X_WC * (static_cast<double>(frame.depth.at<float>(v, u)) * intrinsics.ray(u, v))).cast<float>());
   }
 
+  std::vector<Region> regions;
+  for (const Detection& detection : detections) regions.emplace_back(detection, frame.depth.size());
   Segmentation result;
   std::set<int> found;
   for (SegmentedObject& object : objects) {
-    object.detection_index = detection_of(object.pixels, intrinsics.width, detections, geometric_);
+    object.detection_index = detection_of(object.pixels, intrinsics.width, regions, geometric_);
     if (object.detection_index >= 0) {
       object.detection = detections[static_cast<std::size_t>(object.detection_index)];
       found.insert(object.detection_index);

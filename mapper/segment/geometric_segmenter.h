@@ -13,10 +13,10 @@
 
 namespace waretwin {
 
-// Grinvald et al. 2019, section III-B, with boxes in place of masks: a segment takes the detection whose box holds at least box_share of
-// its pixels and of which it fills min_box_fill, of several the smallest box. What reaches farther out of every box is background, and so
-// are scraps. Nothing is removed as ground or support:
-// floors and table tops are segments like others, and mostly larger than the boxes before them.
+// Grinvald et al. 2019, section III-B: a segment takes the detection whose mask holds at least box_share of its pixels, of several the one
+// that holds most. Where detections have no masks, a box stands for one if the segment fills min_box_fill of it, of several the smallest
+// box. What reaches farther out of all of them is background, and so are scraps. Nothing is removed as ground or support: floors and table
+// tops are segments like others, and mostly larger than the boxes before them.
 class GeometricSegmenter : public Segmenter {
  public:
   GeometricSegmenter(const SegmentConfig& config, const GeometricConfig& geometric, const StreamInfo& info);

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
-#include "harness/truth/mask_codes.h"
 #include "harness/truth/sensor_poses.h"
+#include "mapper/detect/mask_runs.h"
 
 namespace waretwin {
 namespace {

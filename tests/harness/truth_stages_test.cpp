@@ -47,6 +47,12 @@ TEST_F(TruthBoxes, AreTheSmallestAroundTheVisiblePixels) {
   EXPECT_EQ(boxes().size(), 2u);
 }
 
+TEST_F(TruthBoxes, HaveMasksWhereAskedFor) {
+  EXPECT_TRUE(boxes()[0].mask.empty());
+  config_.masks = true;
+  EXPECT_EQ(cv::countNonZero((mask_picture(boxes()[0].mask) != 0) != (instances_ == 1)), 0);
+}
+
 TEST_F(TruthBoxes, NeedDepth) {
   config_.min_depth_pixels = 3;
   EXPECT_TRUE(boxes().empty());

@@ -230,12 +230,14 @@ TEST(SegmentRecords, AThingIsTheInstanceItsSegmentsWereSeenWithMostOften) {
 TEST(LabelSurface, PointsLieWhereTheDistancePassesZero) {
   Bench bench;
   const auto labels = bench.take({bench.segment(square(0, 0)), bench.segment(square(1, 0))});
-  const auto points = label_surface(bench.volume, {labels[0]});
+  const Eigen::AlignedBox3d first(Eigen::Vector3d(0.0, 0.0, -0.02), Eigen::Vector3d(0.4, 0.4, 0.02));
+  const auto points = label_surface(bench.volume, {{labels[0], first}, {labels[1], first}});
   ASSERT_EQ(points.size(), 1u);
   ASSERT_EQ(points.at(labels[0]).size(), 400u);
   // Distances of -15 and 5 mm at z = -0.01 and 0.01: zero at three quarters of the way.
   for (const Eigen::Vector3f& p_W : points.at(labels[0])) EXPECT_NEAR(p_W.z(), 0.005f, 1e-6f);
   EXPECT_TRUE(label_surface(bench.volume, {}).empty());
+  EXPECT_TRUE(label_surface(bench.volume, {{labels[1], first}}).empty()) << "not where its box is";
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <opencv2/core.hpp>
+
 #include "core/error.h"
 #include "core/files.h"
 #include "mapper/detect/boxes_detector.h"
@@ -35,6 +37,38 @@ TEST(BoxesDetector, GivesEachFrameItsOwn) {
   EXPECT_TRUE(detector.detect(frame_at(3'001'100'000)).empty());
   EXPECT_TRUE(detector.detect(frame_at(0)).empty());
   EXPECT_TRUE(NoDetector().detect(frame_at(0)).empty());
+}
+
+TEST(BoxesDetector, TakesMasks) {
+  const test::TemporaryFolder scratch;
+  const auto file = scratch.path() / "boxes.json";
+  // The first three columns of 4 x 5 pixels from row 1 on, as a list and as pycocotools' text of the same.
+  const auto write_mask = [&](const std::string& mask) {
+    write_file(file, R"({"frames": [{"stamp": 1, "detections": [{"class": "a", "box": [0, 1, 3, 3], "mask": )" + mask + "}]}]}");
+  };
+  RgbdFrame frame;
+  frame.stamp = 1;
+  frame.depth = cv::Mat::zeros(4, 5, CV_32FC1);
+  cv::Mat expected = cv::Mat::zeros(4, 5, CV_8UC1);
+  expected(cv::Rect(0, 1, 3, 3)) = 255;
+  for (const char* counts : {"[1, 3, 1, 3, 1, 3, 8]", "\"1310007\""}) {
+    write_mask(std::string(R"({"size": [4, 5], "counts": )") + counts + "}");
+    const std::vector<Detection> found = BoxesDetector(file).detect(frame);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(cv::countNonZero(mask_picture(found[0].mask) != expected), 0) << counts;
+  }
+  const std::pair<const char*, const char*> wrong[] = {{R"({"size": [4, 5], "counts": [1, 3]})", "together; expected width x height = 20"},
+                                                       {R"({"size": [4, 5], "counts": [1, -3, 22]})", "has a run of -3 pixels"},
+                                                       {R"({"size": [4, 5], "counts": "P"})", "counts ends within a number"},
+                                                       {R"({"size": [4, 5], "counts": 3})", "expected COCO's run lengths"},
+                                                       {R"({"size": [4, 0], "counts": [0]})", "size is [4,0]; expected [height, width]"},
+                                                       {R"({"counts": [0]})", "frames[0].detections[0].mask has no \"size\""}};
+  for (const auto& [mask, text] : wrong) {
+    write_mask(mask);
+    EXPECT_ERROR(read_boxes(file), text);
+  }
+  write_mask(R"({"size": [5, 4], "counts": [20]})");
+  EXPECT_ERROR(BoxesDetector(file).detect(frame), "a mask of 4 x 5 pixels in a frame of 5 x 4");
 }
 
 // The files of the paper's authors.

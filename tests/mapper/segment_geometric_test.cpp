@@ -90,6 +90,21 @@ TEST(GeometricSegmenter, OfSeveralBoxesTheSmallestHoldsTheSegment) {
   EXPECT_EQ(names, (std::set<std::string>{"pair", "crate"}));
 }
 
+TEST(GeometricSegmenter, AMaskNamesItsSegmentsWhateverTheBoxesHold) {
+  const test::TracedFrame traced = test::trace(kScene, kView, kCamera);
+  const cv::Rect2f both = *traced.boxes[0] | *traced.boxes[1];
+  const cv::Rect whole(0, 0, 640, 360);
+  const MaskRuns mask{whole.size(), run_lengths(traced.masks[0], whole, whole.size())};
+  // The mask's box is the larger one, and the other detection's box holds both segments.
+  const Segmentation result = segment(traced.frame, {{"pair", both, 1.0f}, {"crate", cv::Rect2f(whole), 0.5f, mask}});
+  for (const SegmentedObject& object : result.objects) {
+    int hits = 0;
+    for (const int pixel : object.pixels) hits += traced.masks[0].at<std::uint8_t>(pixel / 640, pixel % 640) != 0;
+    EXPECT_EQ(object.detection.class_name == "crate", 2 * hits > static_cast<int>(object.pixels.size()));
+  }
+  EXPECT_TRUE(result.rejected.empty()) << "the box names the other one";
+}
+
 TEST(GeometricSegmenter, PixelsBetweenThinnedOnesGoToTheSegmentOfTheirDepth) {
   const test::TracedFrame traced = test::trace(kScene, kView, kCamera);
   GeometricConfig config;

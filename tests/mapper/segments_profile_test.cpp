@@ -1,12 +1,14 @@
 // Profile voxbloxpp as a whole: traced frames through the mapper, from depth pictures to objects.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <numbers>
 #include <utility>
 
 #include "core/digest.h"
 #include "core/parallel.h"
+#include "mapper/integrate/label_surface.h"
 #include "mapper/localise/simple_localisers.h"
 #include "mapper/mapper.h"
 #include "mapper/output/map_archive.h"
@@ -105,6 +107,22 @@ TEST(VoxbloxppProfile, MapsWhatTheBoxesNameAndNothingElse) {
   for (std::size_t i = 1; i < result.logged.size(); ++i) {
     EXPECT_FALSE(result.logged[i].empty());
     for (const int id : result.logged[i]) EXPECT_TRUE(named.contains(id)) << id;
+  }
+}
+
+TEST(VoxbloxppProfile, AnObjectHasAllThePointsThatTheVolumeLabels) {
+  const Drive result = drive(0.001, kAround);
+  const Eigen::AlignedBox3d everywhere(Eigen::Vector3d::Constant(-1e3), Eigen::Vector3d::Constant(1e3));
+  const auto before = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  for (const MappedObject& object : result.map.objects) {
+    std::vector<Eigen::Vector3f> listed = object.points_W, all = label_surface(*result.map.volume, {{object.id, everywhere}}).at(object.id);
+    std::sort(listed.begin(), listed.end(), before);
+    std::sort(all.begin(), all.end(), before);
+    // A voxel may have gone to the background since, whose segments are one at the end.
+    EXPECT_TRUE(std::includes(listed.begin(), listed.end(), all.begin(), all.end(), before));
+    EXPECT_GT(all.size(), 0.95 * static_cast<double>(listed.size()));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "harness/truth/mask_codes.h"
+#include "harness/truth/mask_outlines.h"
 
 #include <array>
 #include <cstdint>
@@ -86,46 +86,6 @@ std::vector<cv::Point2f> simplified(const Loop& loop, double tolerance) {
 }
 
 }  // namespace
-
-std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size) {
-  WARETWIN_CHECK(mask.type() == CV_8UC1 && mask.size() == place.size() && (place & cv::Rect(cv::Point(), size)) == place,
-                 "a mask inside its picture");
-  std::vector<int> runs = {0};
-  bool ones = false;
-  const auto add = [&](bool value, int count) {
-    if (count == 0) return;
-    if (value != ones) {
-      runs.push_back(0);
-      ones = value;
-    }
-    runs.back() += count;
-  };
-  add(false, place.x * size.height);
-  for (int u = 0; u < place.width; ++u) {
-    add(false, place.y);
-    for (int v = 0; v < place.height; ++v) add(mask.at<std::uint8_t>(v, u) != 0, 1);
-    add(false, size.height - place.y - place.height);
-  }
-  add(false, (size.width - place.x - place.width) * size.height);
-  return runs;
-}
-
-std::string compressed_runs(const std::vector<int>& runs) {
-  std::string text;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    long value = runs[i];
-    if (i > 2) value -= runs[i - 2];
-    bool more = true;
-    while (more) {
-      long letter = value & 0x1f;
-      value >>= 5;
-      more = (letter & 0x10) != 0 ? value != -1 : value != 0;
-      if (more) letter |= 0x20;
-      text += static_cast<char>(letter + 48);
-    }
-  }
-  return text;
-}
 
 std::vector<std::vector<double>> outlines(const cv::Mat& mask, const cv::Point& place, double tolerance_px) {
   WARETWIN_CHECK(mask.type() == CV_8UC1, "a mask");

@@ -1,5 +1,5 @@
-// Masks as text, held against a plain reader of each format.
-#include "harness/truth/mask_codes.h"
+// Masks as polygons, held against a plain filling of them.
+#include "harness/truth/mask_outlines.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ cv::Mat random_mask(std::uint64_t seed, int width, int height) {
 
 bool same(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::countNonZero(a != b) == 0; }
 
-TEST(MaskCodes, OutlinesFillToTheMask) {
+TEST(MaskOutlines, OutlinesFillToTheMask) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
     const cv::Mat mask = random_mask(seed, 41, 29);
@@ -39,7 +39,7 @@ TEST(MaskCodes, OutlinesFillToTheMask) {
   }
 }
 
-TEST(MaskCodes, OutlinesOfASquareAndARing) {
+TEST(MaskOutlines, OutlinesOfASquareAndARing) {
   cv::Mat mask = cv::Mat::zeros(5, 6, CV_8UC1);
   mask(cv::Rect(1, 1, 4, 3)).setTo(255);
   EXPECT_EQ(outlines(mask, {10, 20}, 0.0), (std::vector<std::vector<double>>{{11, 21, 15, 21, 15, 24, 11, 24}}));
@@ -49,7 +49,7 @@ TEST(MaskCodes, OutlinesOfASquareAndARing) {
   EXPECT_TRUE(same(test::filled(ring, mask.size()), mask));
 }
 
-TEST(MaskCodes, ToleranceLeavesOutStairs) {
+TEST(MaskOutlines, ToleranceLeavesOutStairs) {
   cv::Mat mask = cv::Mat::zeros(200, 200, CV_8UC1);
   cv::circle(mask, {100, 100}, 80, 255, -1);
   const auto exact = outlines(mask, {0, 0}, 0.0), coarse = outlines(mask, {0, 0}, 1.0);
@@ -57,23 +57,6 @@ TEST(MaskCodes, ToleranceLeavesOutStairs) {
   EXPECT_LT(coarse[0].size(), exact[0].size() / 4);
   const int off = cv::countNonZero(test::filled(coarse, mask.size()) != mask);
   EXPECT_LT(off, cv::countNonZero(mask) / 50);
-}
-
-TEST(MaskCodes, RunsReadBack) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE(seed);
-    const cv::Mat mask = random_mask(seed, 37, 23);
-    const cv::Size size(90, 70);
-    const cv::Rect place(13, 40, 37, 23);
-    cv::Mat placed = cv::Mat::zeros(size, CV_8UC1);
-    mask.copyTo(placed(place));
-    const std::vector<int> runs = run_lengths(mask, place, size);
-    EXPECT_TRUE(same(test::from_runs(runs, size), placed));
-    EXPECT_EQ(test::read_runs(compressed_runs(runs)), runs);
-  }
-  // Numbers of every length and sign.
-  const std::vector<int> runs = {0, 15, 16, 31, 32, 1000, 1023, 1, 1024, 1000000, 3, 2};
-  EXPECT_EQ(test::read_runs(compressed_runs(runs)), runs);
 }
 
 }  // namespace
