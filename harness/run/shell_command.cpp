@@ -40,6 +40,33 @@ class Output {
   int descriptor_;
 };
 
+// Says when a child has become its command: until then it holds this program's memory.
+class Start {
+ public:
+  Start() {
+    if (pipe2(ends_, O_CLOEXEC) != 0) throw InternalError("no pipe can be made: " + std::string(std::strerror(errno)));
+  }
+  ~Start() {
+    for (const int end : ends_) {
+      if (end >= 0) close(end);
+    }
+  }
+  Start(const Start&) = delete;
+  Start& operator=(const Start&) = delete;
+
+  // In the parent, once; nobody writes, so what comes is the end.
+  void wait() {
+    close(ends_[1]);
+    ends_[1] = -1;
+    char none = 0;
+    while (read(ends_[0], &none, 1) < 0 && errno == EINTR) {
+    }
+  }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
 // The default action of a child's end while any of these lives: commands may run side by side.
 class WaitsForChildren {
  public:
@@ -144,6 +171,7 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // Where it is ignored (some daemons leave it so), a child's end could not be waited for.
   const WaitsForChildren children;
+  Start started;
   const pid_t parent = getpid();
   const auto start = Clock::now();
   const pid_t child = fork();
@@ -162,6 +190,7 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   setpgid(child, child);  // whichever of the two comes first
 
   Group group(child);
+  started.wait();
   ShellResult result;
   int status = 0;
   for (bool asked = false; !group.done(status);) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/error.h"
 #include "core/files.h"
 #include "harness/units/units.h"
 #include "mapper/detect/model_files.h"
@@ -18,8 +19,12 @@ namespace {
 // Names within a folder count, for they are what the command knows its files by.
 void add_folder(const fs::path& folder, Digest& digest) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw Error(folder, "cannot be read: " + error.code().message());
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
