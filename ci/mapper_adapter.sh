@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Puts any mapper that writes a plain list of boxes behind `waretwin run --mapper`:
-#   waretwin run SCENARIO --out DIR --mapper "ci/mapper_adapter.sh {recording} {out} my_mapper --fast"
+#   waretwin run SCENARIO --out DIR --mapper "ci/mapper_adapter.sh {recording} {out} my_mapper --fast"     (or run --suite, or study)
 # runs `my_mapper --fast RECORDING OUT`, which leaves OUT/boxes.txt with a line an object,
 #   class x y z yaw dx dy dz [score]     (metres, radians; x y z the centre; # begins a comment)
 # and turns that into OUT/cuboids.json. Copy it and change what your mapper does otherwise.

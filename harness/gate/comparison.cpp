@@ -109,6 +109,8 @@ Comparison compare_scores(const JudgedScore& before, const JudgedScore& after, c
     const Measure& measure = measures()[i];
     ComparedValue value{measure.name, before.values[i], after.values[i], tolerances.measures.values[i], Verdict::kNotJudged};
     if (!value.before && !value.after) continue;
+    // What one of the two has no stage for is no loss.
+    if (measure.ours && (before.of_another_mapper() || after.of_another_mapper())) value.tolerance.reset();
     value.verdict = verdict_of(value.before, value.after, measure.more_is_better, value.tolerance);
     comparison.values.push_back(value);
   }

@@ -17,6 +17,7 @@ struct Measure {
   std::optional<double> tolerance;  // by which it may get worse, in its own unit; nothing: shown and not judged unless asked for
   const char* what;
   bool counts = false;  // the entries of a list there
+  bool ours = false;    // comes of our own mapper's stages: another mapper's score has none
 };
 std::span<const Measure> measures();
 

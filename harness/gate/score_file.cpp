@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "harness/gate/measures.h"
+#include "harness/run/external_mapper.h"
 #include "harness/score/cuboid_file.h"
 #include "harness/score/score_json.h"
 
@@ -45,6 +46,8 @@ JudgedObject object_of(const Json& row, const std::filesystem::path& file) {
 
 }  // namespace
 
+bool JudgedScore::of_another_mapper() const { return profile == kExternalProfile; }
+
 JudgedScore judged_score(const std::string& text, const std::filesystem::path& file) {
   Json json;
   try {
@@ -61,7 +64,11 @@ JudgedScore judged_score(const std::string& text, const std::filesystem::path& f
   score.digest = text_at(json, "/digest");
   score.cpu = text_at(json, "/cpu/model");
   if (const auto seed = json.find("seed"); seed != json.end() && seed->is_number_integer()) score.seed = seed->get<std::int64_t>();
-  for (const Measure& measure : measures()) score.values.push_back(number_at(json, measure, file));
+  for (const Measure& measure : measures()) {
+    const std::optional<double> value = number_at(json, measure, file);
+    // Such a score says 0 frames without a pose of a mapper that nobody asked.
+    score.values.push_back(measure.ours && score.of_another_mapper() ? std::nullopt : value);
+  }
   const auto objects = json.find("objects");
   if (objects != json.end()) {
     if (!objects->is_array()) throw Error(file, "objects is " + brief(*objects) + "; expected a list");

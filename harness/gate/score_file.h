@@ -20,6 +20,8 @@ struct JudgedScore {
   std::optional<std::int64_t> seed;
   std::vector<std::optional<double>> values;  // one for each of measures(); nothing where the file has none or null
   std::vector<JudgedObject> objects;
+
+  bool of_another_mapper() const;  // values of Measure::ours are then nothing
 };
 
 // `path`: a score.json or the folder of a run that has one. Throws Error for a file that is no score of this schema.

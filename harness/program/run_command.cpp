@@ -15,6 +15,7 @@
 #include "core/files.h"
 #include "harness/gate/comparison_junit.h"
 #include "harness/program/common_options.h"
+#include "harness/program/external_options.h"
 #include "harness/program/gate_options.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/mapping_options.h"
@@ -30,7 +31,6 @@
 #include "harness/score/score_json.h"
 #include "mapper/detect/shipped_models.h"
 #include "mapper/detect/yolo_detector.h"
-#include "sensors/recordings/recording_writer.h"
 
 namespace waretwin {
 
@@ -42,29 +42,30 @@ struct RunOptions {
   GateOptions gate;
   SuiteOptions suite;
   std::string scenario, out, baseline;
-  bool budget = false, keep_recording = false;
-  std::string mapper, format;
-  std::optional<double> mapper_timeout_s;
+  bool budget = false;
+  ExternalOptions external;
   std::string poses, depth = "sensor", association = "map";
 };
 
-RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
+RunChoice choice_of(const RunOptions& options) {
   const MappingOptions& mapping = options.mapping;
-  RunConfig config = chosen_run({.profile = mapping.profile,
-                                 .detector = mapping.detector,
-                                 .poses = options.poses,
-                                 .depth = options.depth,
-                                 .association = options.association,
-                                 .rate_hz = mapping.rate_hz,
-                                 .frames = mapping.frames,
-                                 .resume = mapping.resume,
-                                 .extrinsics = mapping.extrinsics});
-  if (!options.mapper.empty()) config.external_mapper.command = options.mapper;
-  if (!options.format.empty()) config.external_mapper.format = options.format;
-  if (options.mapper_timeout_s) config.external_mapper.timeout_s = *options.mapper_timeout_s;
-  if (options.keep_recording) config.external_mapper.keep_recording = true;
+  return {.profile = mapping.profile,
+          .detector = mapping.detector,
+          .poses = options.poses,
+          .depth = options.depth,
+          .association = options.association,
+          .rate_hz = mapping.rate_hz,
+          .frames = mapping.frames,
+          .resume = mapping.resume,
+          .extrinsics = mapping.extrinsics,
+          .external_mapper = {}};
+}
+
+RunConfig configure(const RunOptions& options, std::vector<Setting> given) {
+  RunConfig config = chosen_run(choice_of(options));
   std::vector<Setting> settings;
   if (options.common.seed) settings.push_back({"seed", std::to_string(*options.common.seed)});
+  for (Setting& setting : options.external.settings()) settings.push_back(std::move(setting));
   for (Setting& setting : given) settings.push_back(std::move(setting));
   return load_run_config(options.scenario, std::move(config), options.mapping.config_file, settings);
 }
@@ -96,17 +97,6 @@ void warn_of_strange_classes(const RunConfig& config, const Scene& scene) {
   if (strange.empty()) return;
   spdlog::warn("the detector's model {} does not know {}, which the hall has: it will find none (it knows {})", model.string(),
                list(strange), list(known));
-}
-
-// What a mapper of the user's is told by other options, but for those that say what it is given.
-void expect_no_own_mapper_options(const RunOptions& options) {
-  const auto& detector = options.mapping.detector;
-  if (detector && *detector != "truth" && *detector != "none") {
-    throw Error("--detector " + *detector + ": with --mapper expected truth ({boxes} are then the true ones) or none");
-  }
-  if (!options.poses.empty() && options.poses != "truth") {
-    throw Error("--poses " + options.poses + ": with --mapper expected truth (the recording then holds the camera's poses)");
-  }
 }
 
 void print_explanations(const ComparedLists& objects) {
@@ -154,18 +144,16 @@ int run_with_external_mapper(const RunOptions& options, const RunConfig& config,
         });
   }
   const ShellResult& shell = result.shell;
-  if (!result.score) {
-    for (const std::string& line : result.last_words) std::cerr << "  " << line << "\n";
-    if (shell.timed_out) {
-      spdlog::error("the mapper was ended after {:.0f} s (--mapper-timeout); see {}", shell.wall_s,
-                    folder->file("mapper/stderr.log").string());
-    } else {
-      spdlog::error("the mapper ended with exit code {} after {:.1f} s; see {}", shell.exit_code, shell.wall_s,
-                    folder->file("mapper/stderr.log").string());
-    }
+  write_external(*folder, config, result);
+  const std::string failure = result.score ? "" : failure_text(result, folder->path());
+  if (!failure.empty()) {
+    // An end that was none is the command's failure; a list that cannot be read is bad input.
+    if (!shell.timed_out && shell.exit_code == 0) throw Error(failure);
+    for (std::size_t i = 0; i + 1 < result.last_words.size(); ++i) std::cerr << "  " << result.last_words[i] << "\n";
+    spdlog::error("{}", failure);
     return 1;
   }
-  if (!result.trajectory_problem.empty()) spdlog::warn("{}", result.trajectory_problem);
+  if (const std::string problem = trajectory_text(result, folder->path()); !problem.empty()) spdlog::warn("{}", problem);
   const RunScore& score = *result.score;
   print_summary("as mapped", score.objects.plain.summary);
   if (score.objects.aligned) print_summary("aligned  ", score.objects.aligned->summary);
@@ -179,7 +167,7 @@ int run_with_external_mapper(const RunOptions& options, const RunConfig& config,
 
 int run(const RunOptions& options) {
   options.common.apply();
-  if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.out);
+  if (!options.suite.suite.empty()) return run_suite_by(options.suite, options.common, options.external.settings(), options.out);
   if (options.scenario.empty()) throw Error("no hall; expected SCENARIO, or --suite SUITE");
   std::vector<Setting> settings = options.common.settings();
   const std::vector<Setting> of_tolerances = take_tolerance_settings(settings);
@@ -191,9 +179,9 @@ int run(const RunOptions& options) {
   std::optional<JudgedScore> baseline;
   if (!options.baseline.empty()) baseline = read_judged_score(options.baseline);
   const RunConfig config = configure(options, std::move(settings));
-  if (!config.external_mapper.command.empty()) {
+  if (config.external_mapper.used()) {
     if (options.budget) throw Error("--budget: another mapper has no stages of ours (external_mapper.command); expected one or the other");
-    expect_no_own_mapper_options(options);
+    expect_none_of_ours(choice_of(options));
   }
   if (options.budget && !config.resume.empty()) {
     throw Error("--budget: the configuration goes on from a map (resume: " + config.resume +
@@ -208,7 +196,7 @@ int run(const RunOptions& options) {
     RunConfig resolved = config;
     folder->write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + options.scenario));
   };
-  if (!config.external_mapper.command.empty()) {
+  if (config.external_mapper.used()) {
     const auto made = [&]() -> RunFolder& {
       ready();
       return *folder;
@@ -260,20 +248,7 @@ Command add_run_command(CLI::App& program) {
                  "drives once more (with up to six maps in memory) and maps with the truth in place of each stage in turn: budget.md says "
                  "what each stage costs")
       ->excludes("--resume");
-  CLI::Option* own_mapper =
-      command
-          ->add_option("--mapper", options->mapper,
-                       "another mapper in place of ours: records the drive, runs this shell line, in which {recording} and {out} stand for "
-                       "folders, and scores the cuboids.json that it leaves in {out} (docs/mappers.md)")
-          ->type_name("COMMAND");
-  command->add_option("--mapper-timeout", options->mapper_timeout_s, "ends the command after S seconds (default 3600; 0: never)")
-      ->type_name("S")
-      ->check(number_from_to(0.0, 1e7))
-      ->needs(own_mapper);
-  command->add_option("--format", options->format, "of the recording that it gets, as for record (default tum)")
-      ->check(CLI::IsMember(recording_formats()))
-      ->needs(own_mapper);
-  command->add_flag("--keep-recording", options->keep_recording, "leaves the recording in DIR/mapper/recording")->needs(own_mapper);
+  CLI::Option* own_mapper = options->external.add_to(*command, "DIR/mapper/recording (of a suite: DIR/RUN/mapper/recording)");
   for (const char* ours : {"--profile", "--resume", "--association", "--budget", "--extrinsics", "--config"})
     own_mapper->excludes(command->get_option(ours));
   CLI::Option* baseline =
@@ -288,7 +263,7 @@ Command add_run_command(CLI::App& program) {
   options->suite.add_to(*command);
   // Each run of a suite has its own.
   for (const char* own : {"SCENARIO", "--profile", "--detector", "--rate", "--frames", "--resume", "--extrinsics", "--config", "--poses",
-                          "--depth", "--association", "--budget", "--baseline", "--mapper"})
+                          "--depth", "--association", "--budget", "--baseline"})
     command->get_option("--suite")->excludes(own);
   options->common.add_to(*command);
   command->footer(
@@ -296,7 +271,8 @@ Command add_run_command(CLI::App& program) {
       "  waretwin run scenes/agiprobot/scenario.yaml --out out/again --config out/agiprobot/config.yaml\n"
       "  waretwin run scenes/agiprobot/scenario.yaml --out out/branch --baseline out/main/score.json --junit out/branch.xml\n"
       "  waretwin run scenes/agiprobot/scenario.yaml --out out/theirs --rate 2 --mapper \"my_mapper {recording} {out}\"\n"
-      "  waretwin run --suite scenes/smoke.yaml --out out/smoke\n\n"
+      "  waretwin run --suite scenes/smoke.yaml --out out/smoke\n"
+      "  waretwin run --suite theirs.yaml --out out/theirs --mapper \"my_mapper {recording} {out}\"   # in every run of the suite\n\n"
       "`waretwin inspect SCENARIO --keys` lists every key for --set; with --baseline there is tolerances.MEASURE, too (waretwin compare).");
   return {command, [options] { return run(*options); }};
 }

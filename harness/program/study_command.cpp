@@ -10,6 +10,8 @@
 
 #include "core/error.h"
 #include "harness/program/common_options.h"
+#include "harness/program/external_options.h"
+#include "harness/program/found_units.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/progress.h"
 #include "harness/study/preview.h"
@@ -21,6 +23,7 @@ namespace {
 
 struct StudyOptions {
   CommonOptions common;
+  ExternalOptions external;
   std::string study, out, shard;
   int jobs = 0;
   bool merge = false, preview = false, coverage = false;
@@ -31,7 +34,8 @@ int run(const StudyOptions& options) {
   StudyRequest request;
   request.file = options.study;
   request.out = options.out;
-  request.settings = options.common.settings();
+  request.settings = options.external.settings();
+  for (Setting& setting : options.common.settings()) request.settings.push_back(std::move(setting));
   request.seed = options.common.seed;
   if (!options.shard.empty()) request.shard = parse_shard(options.shard);
   request.merge_only = options.merge;
@@ -58,8 +62,7 @@ int run(const StudyOptions& options) {
     }
     summary = run_study(request, hooks);
   }
-  if (summary.found > 0)
-    std::printf("%d runs were there already, of this program and configuration (%s/units)\n", summary.found, options.out.c_str());
+  print_found(summary.found, summary.found_unwatched, options.out);
   if (!summary.results) {
     if (options.merge)
       throw Error(options.out, std::to_string(summary.missing) +
@@ -98,15 +101,19 @@ Command add_study_command(CLI::App& program) {
   command->add_flag("--coverage", options->coverage, "coverage and blind zones of all candidates, without mapping anything")
       ->excludes(preview);
   command
-      ->add_option("--jobs", options->jobs,
-                   "drives at a time, each on one thread and in up to 1 GB; 1: one, on all threads; 0: as many as threads and memory allow")
+      ->add_option(
+          "--jobs", options->jobs,
+          "drives at a time, each on one thread and in up to 1 GB; 1: one, on all threads; 0: as many as threads and memory allow, "
+          "with another mapper one")
       ->type_name("N")
       ->check(CLI::Range(0, 4096));
+  options->external.add_to(*command, "DIR/drives/CANDIDATE-HALL-SEED/mapper/recording");
   options->common.add_to(*command);
   command->footer(
       "Example:\n  waretwin study scenes/agiprobot/studies/smoke.yaml --out out/smoke\n"
       "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/mount --preview\n"
-      "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/mount --coverage\n\n"
+      "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/mount --coverage\n"
+      "  waretwin study scenes/agiprobot/studies/mount.yaml --out out/theirs --mapper \"my_mapper {recording} {out}\"\n\n"
       "--set also changes the study's own keys, e.g. study.points=64; --seed N replaces its seeds by N, N + 1, ...");
   return {command, [options] { return run(*options); }};
 }

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "core/error.h"
+#include "harness/program/found_units.h"
 #include "harness/program/interrupt.h"
 #include "harness/program/progress.h"
 #include "harness/suite/suite.h"
@@ -28,8 +29,8 @@ void SuiteOptions::add_to(CLI::App& command) {
   together->needs(option)->excludes(part);
 }
 
-int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const std::string& out) {
-  std::vector<Setting> settings;
+int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const std::vector<Setting>& before, const std::string& out) {
+  std::vector<Setting> settings = before;
   if (common.seed) settings.push_back({"seed", std::to_string(*common.seed)});
   for (Setting& setting : common.settings()) settings.push_back(std::move(setting));
   SuiteSummary summary;
@@ -44,8 +45,7 @@ int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const
     };
     summary = run_suite({options.suite, settings, out, shard, options.merge}, hooks);
   }
-  if (summary.found > 0)
-    std::printf("%d runs were there already, of this program and configuration (%s/units)\n", summary.found, out.c_str());
+  print_found(summary.found, summary.found_unwatched, out);
   if (!summary.missing.empty()) {
     std::string names;
     for (const std::string& name : summary.missing) names += (names.empty() ? "" : ", ") + name;

@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <vector>
 
 #include "harness/program/common_options.h"
 
@@ -15,7 +16,8 @@ struct SuiteOptions {
   void add_to(CLI::App& command);
 };
 
-// 0 where every run passed or other shards' are missing, 1 where one did not, 2 where one could not be driven.
-int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const std::string& out);
+// `before`: settings for every run, before those of `common`. 0 where every run passed or other shards' are missing, 1 where one did not,
+// 2 where one could not be driven.
+int run_suite_by(const SuiteOptions& options, const CommonOptions& common, const std::vector<Setting>& before, const std::string& out);
 
 }  // namespace waretwin

@@ -49,8 +49,7 @@ std::optional<double> unlocalised_share(const std::vector<TrajectoryPoint>& traj
 
 ClosedLoopResult run_closed_loop(const RunConfig& config, const std::shared_ptr<const Scene>& scene, const std::function<void()>& ready,
                                  const std::function<void(double, const ObjectMap&)>& progress) {
-  if (!config.external_mapper.command.empty())
-    throw Error("external_mapper.command: only `waretwin run SCENARIO` drives another mapper; expected none here");
+  if (!config.external_mapper.command.empty()) throw Error("external_mapper.command: this drives our own mapper alone; expected none here");
   SimulationConfig simulation = config.simulation;
   simulation.ideal_depth = config.extras.depth || config.extras.pictures;
   SimulatedStream stream(config.scenario, scene, simulation);

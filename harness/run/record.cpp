@@ -102,7 +102,7 @@ RecordedDrive record_drive(const RecordConfig& config, const std::shared_ptr<con
   const StreamInfo& info = stream.info();
   calibration_of(info);  // throws before anything is written
   std::unique_ptr<SurfaceCoverage> coverage;
-  if (!info.cameras.empty() && !scene->objects.empty()) {
+  if (plan.visible_share && !info.cameras.empty() && !scene->objects.empty()) {
     coverage = std::make_unique<SurfaceCoverage>(stream.ray_caster(), config.scenario.sensors.cameras, config.scenario.robot);
   }
 
@@ -150,6 +150,9 @@ RecordedDrive record_drive(const RecordConfig& config, const std::shared_ptr<con
   writer->finish();
   if (boxes) boxes->close();
   drive.truth = true_list(*scene, coverage.get());
+  if (!plan.visible_share) {
+    for (ListedObject& object : drive.truth) object.visible_fraction = 1.0;
+  }
   drive.motion = stream.motion();
   if (plan.truth_beside) {
     RecordConfig resolved = config;

@@ -44,8 +44,9 @@ struct RecordPlan {
   // The camera's true poses as the recorded ones, in formats that have a place for them; `map` takes them with --poses recorded, and where
   // there is no laser.
   bool true_poses = false;
-  bool true_boxes = false;  // boxes.json, as truth_boxes.json, though there is no truth beside
-  double rate_hz = 0.0;     // frames recorded a second, those in between are dropped; 0: every frame
+  bool true_boxes = false;    // boxes.json, as truth_boxes.json, though there is no truth beside
+  double rate_hz = 0.0;       // frames recorded a second, those in between are dropped; 0: every frame
+  bool visible_share = true;  // how much of each true object the frames saw is measured; without it all are taken for seen
 };
 // As `waretwin record` writes a format: those that are published with the camera's poses get the true ones.
 RecordPlan record_plan(const std::string& format);

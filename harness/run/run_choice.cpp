@@ -59,6 +59,7 @@ void RunChoice::visit(Fields& f) {
   f("association", association, "map or truth", {.choices = {"map", "truth"}});
   f("rate_hz", rate_hz, "frames mapped a second; 0: every frame; null: as the profile has it", {.min = 0, .max = 1000});
   f("frames", frames, "stops after this many camera frames; 0: all", {.min = 0, .max = 1e9});
+  f.group("external_mapper", external_mapper, "another mapper in place of ours (docs/mappers.md)");
 }
 
 RunConfig chosen_run(const RunChoice& choice) {
@@ -74,7 +75,19 @@ RunConfig chosen_run(const RunChoice& choice) {
   config.simulation.max_frames = choice.frames;
   config.resume = choice.resume;
   config.extrinsics = choice.extrinsics;
+  config.external_mapper = choice.external_mapper;
   return config;
+}
+
+void expect_none_of_ours(const RunChoice& choice) {
+  const RunChoice usual;
+  const std::string with = ": with another mapper (external_mapper.command) expected ";
+  if (choice.profile != usual.profile) throw Error("--profile " + choice.profile + with + "none");
+  if (choice.detector && *choice.detector != "truth" && *choice.detector != "none")
+    throw Error("--detector " + *choice.detector + with + "truth ({boxes} are then the true ones) or none");
+  if (!choice.poses.empty() && choice.poses != "truth")
+    throw Error("--poses " + choice.poses + with + "truth (the recording then holds the camera's poses) or none");
+  if (choice.association != usual.association) throw Error("--association " + choice.association + with + "none");
 }
 
 }  // namespace waretwin

@@ -26,11 +26,16 @@ struct RunChoice {
   int frames = 0;                 // 0: all
   std::string resume;             // a map.waretwin; no key: nothing that a file says over and over
   std::string extrinsics;         // of `calibrate`; no key: `set` names it
+  ExternalMapper external_mapper;
 
   void visit(Fields& f);
 };
 
 // All but the scenario.
 RunConfig chosen_run(const RunChoice& choice);
+
+// Throws Error where the choice tells another mapper what only ours can be told: a profile, a detector's model, how it localises or
+// associates.
+void expect_none_of_ours(const RunChoice& choice);
 
 }  // namespace waretwin

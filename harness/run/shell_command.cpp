@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <thread>
 
 #include "core/error.h"
@@ -39,21 +40,63 @@ class Output {
   int descriptor_;
 };
 
-// A signal's default action while it lives.
-class DefaultAction {
+// Says when a child has become its command: until then it holds this program's memory.
+class Start {
  public:
-  explicit DefaultAction(int number) : number_(number) {
-    struct sigaction action = {};
-    action.sa_handler = SIG_DFL;
-    sigaction(number_, &action, &before_);
+  Start() {
+    if (pipe2(ends_, O_CLOEXEC) != 0) throw InternalError("no pipe can be made: " + std::string(std::strerror(errno)));
   }
-  ~DefaultAction() { sigaction(number_, &before_, nullptr); }
-  DefaultAction(const DefaultAction&) = delete;
-  DefaultAction& operator=(const DefaultAction&) = delete;
+  ~Start() {
+    for (const int end : ends_) {
+      if (end >= 0) close(end);
+    }
+  }
+  Start(const Start&) = delete;
+  Start& operator=(const Start&) = delete;
+
+  // In the parent, once; nobody writes, so what comes is the end.
+  void wait() {
+    close(ends_[1]);
+    ends_[1] = -1;
+    char none = 0;
+    while (read(ends_[0], &none, 1) < 0 && errno == EINTR) {
+    }
+  }
 
  private:
-  int number_;
-  struct sigaction before_ = {};
+  int ends_[2] = {-1, -1};
+};
+
+// The default action of a child's end while any of these lives: commands may run side by side.
+class WaitsForChildren {
+ public:
+  WaitsForChildren() {
+    const std::lock_guard lock(mutex());
+    if (living()++ > 0) return;
+    struct sigaction action = {};
+    action.sa_handler = SIG_DFL;
+    sigaction(SIGCHLD, &action, &before());
+  }
+  ~WaitsForChildren() {
+    const std::lock_guard lock(mutex());
+    if (--living() == 0) sigaction(SIGCHLD, &before(), nullptr);
+  }
+  WaitsForChildren(const WaitsForChildren&) = delete;
+  WaitsForChildren& operator=(const WaitsForChildren&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  static int& living() {
+    static int count = 0;
+    return count;
+  }
+  static struct sigaction& before() {
+    static struct sigaction action = {};
+    return action;
+  }
 };
 
 // A process group that ends with the scope.
@@ -68,6 +111,12 @@ class Group {
   Group& operator=(const Group&) = delete;
 
   void signal(int number) const { kill(-leader_, number); }
+  // Asks it to end and waits so long for it: what it started elsewhere (a container) may be ended by it alone.
+  void end_politely(double patience_s) {
+    const auto start = Clock::now();
+    signal(SIGTERM);
+    for (int status = 0; !done(status) && seconds_since(start) < patience_s;) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   // Whether the shell is done; then how.
   bool done(int& status) {
     const pid_t found = waitpid(leader_, &status, WNOHANG);
@@ -121,7 +170,8 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   const Output out(stdout_file), err(stderr_file);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   // Where it is ignored (some daemons leave it so), a child's end could not be waited for.
-  const DefaultAction children(SIGCHLD);
+  const WaitsForChildren children;
+  Start started;
   const pid_t parent = getpid();
   const auto start = Clock::now();
   const pid_t child = fork();
@@ -140,6 +190,7 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   setpgid(child, child);  // whichever of the two comes first
 
   Group group(child);
+  started.wait();
   ShellResult result;
   int status = 0;
   for (bool asked = false; !group.done(status);) {
@@ -150,7 +201,12 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
     }
     if (asked && now > timeout_s + kGrace_s) group.signal(SIGKILL);
     result.peak_rss_mb = std::max(result.peak_rss_mb, group.peak_rss_mb());
-    if (waiting) waiting(now);
+    try {
+      if (waiting) waiting(now);
+    } catch (...) {
+      group.end_politely(kGrace_s);
+      throw;
+    }
     // Short commands are not kept waiting, long ones not asked too often.
     std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(now / 10.0, 0.002, 0.1)));
   }

@@ -13,10 +13,12 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/side_by_side.h"
+#include "core/staged_folder.h"
 #include "harness/gate/measures.h"
 #include "harness/gate/score_file.h"
 #include "harness/report/report_file.h"
 #include "harness/run/closed_loop.h"
+#include "harness/run/external_run.h"
 #include "harness/score/score_json.h"
 #include "harness/study/study_files.h"
 #include "harness/study/study_units.h"
@@ -200,26 +202,58 @@ class StudyRunner {
     return text && read_unit(*text, store_.file(unit)).result.error.empty();
   }
 
+  static void take(const RunScore& run, StudyRunResult& result) {
+    result.digest = run.digest;
+    const JudgedScore score = judged_score(score_json(run), "score.json");
+    for (std::size_t k = 0; k < measures().size(); ++k) {
+      const std::optional<std::size_t> m = study_measure(measures()[k].name);
+      if (m) result.values[*m] = score.values[k];
+    }
+  }
+
+  // What the command was given and left goes with the drive, unless it failed or somebody wants it.
+  void drive_external(const Drive& one, const std::function<void(double)>& progress, StudyRunResult& result) const {
+    const std::string name =
+        setup_.candidates[one.candidate].name + "-" + one.in_hall->hall + "-" + std::to_string(one.config.scenario.seed);
+    const fs::path place = fs::path("drives") / name;
+    StagedFolder staged(request_.out / place);
+    RunFolder folder(staged.path());
+    const ExternalRunResult run = run_external(
+        one.config, one.in_hall->shared->scene, [&]() -> RunFolder& { return folder; },
+        [&](double share, const std::string&) { progress(share); });
+    if (run.score) {
+      take(*run.score, result);
+    } else {
+      result.error = failure_text(run, place);
+    }
+    if (!run.score || one.config.external_mapper.keep_recording) {
+      staged.commit();
+    } else {
+      std::error_code stays;
+      fs::remove_all(request_.out / place, stays);  // of a failure before
+    }
+  }
+
   UnitRecord drive(const Drive& one, const std::function<void(double)>& progress) const {
     UnitRecord record;
     record.cpu = cpu_identity();
     record.result.values.resize(study_measures().size());
     std::exception_ptr stopped;  // by the caller, which is no fault of the drive
+    const auto told = [&](double share) {
+      try {
+        progress(share);
+      } catch (...) {
+        stopped = std::current_exception();
+        throw;
+      }
+    };
     const auto start = std::chrono::steady_clock::now();
     try {
-      const ClosedLoopResult result = run_closed_loop(one.config, one.in_hall->shared->scene, {}, [&](double share, const ObjectMap&) {
-        try {
-          progress(share);
-        } catch (...) {
-          stopped = std::current_exception();
-          throw;
-        }
-      });
-      record.result.digest = result.score.digest;
-      const JudgedScore score = judged_score(score_json(result.score), "score.json");
-      for (std::size_t k = 0; k < measures().size(); ++k) {
-        const std::optional<std::size_t> m = study_measure(measures()[k].name);
-        if (m) record.result.values[*m] = score.values[k];
+      if (one.config.external_mapper.used()) {
+        drive_external(one, told, record.result);
+      } else {
+        take(run_closed_loop(one.config, one.in_hall->shared->scene, {}, [&](double share, const ObjectMap&) { told(share); }).score,
+             record.result);
       }
     } catch (const Error& error) {
       if (stopped) std::rethrow_exception(stopped);
@@ -233,7 +267,9 @@ class StudyRunner {
   void drive_side_by_side(const std::vector<const Drive*>& drives) {
     constexpr double kBytes = 1e9;  // of a drive, generously
     std::size_t jobs = static_cast<std::size_t>(request_.jobs);
-    if (jobs == 0) jobs = std::min(static_cast<std::size_t>(thread_count()), jobs_in_memory(kBytes));
+    // What another mapper needs nobody knows.
+    const bool external = std::any_of(drives.begin(), drives.end(), [](const Drive* one) { return one->config.external_mapper.used(); });
+    if (jobs == 0) jobs = external ? 1 : std::min(static_cast<std::size_t>(thread_count()), jobs_in_memory(kBytes));
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
     std::map<std::size_t, double> shares;  // of the drives under way
@@ -285,6 +321,8 @@ class StudyRunner {
       if (request_.merge_only || !request_.shard.has(i)) continue;
       if (done[static_cast<std::size_t>(i)]) {
         ++summary.found;
+        const ExternalMapper& mapper = all[static_cast<std::size_t>(i)].config.external_mapper;
+        if (mapper.used() && mapper.depends.empty()) ++summary.found_unwatched;
       } else {
         to_do.push_back(&all[static_cast<std::size_t>(i)]);
       }

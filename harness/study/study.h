@@ -23,7 +23,7 @@ struct StudyRequest {
   Shard shard;
   bool merge_only = false;     // drives nothing
   bool coverage_only = false;  // maps nothing
-  int jobs = 0;                // drives at a time, each on one thread; 0: as many as there are threads and memory
+  int jobs = 0;                // drives at a time, each on one thread; 0: as many as there are threads and memory, with another mapper one
 };
 
 struct StudyProgress {
@@ -45,13 +45,15 @@ struct StudySummary {
   std::filesystem::path folder;         // of the results: OUT, of coverage alone OUT/screening
   int runs = 0, missing = 0;            // of all shards
   int found = 0;                        // of this shard, there already
+  int found_unwatched = 0;              // of those, another mapper's that names no files (external_mapper.depends): it may be a new one
   int kinds_of_cpu = 1;
 };
 
 // Measures the coverage of every candidate, drives this shard's share of the runs that follow, and, where it was the last part, writes
 // results.json, results.csv, runs.csv, study.md, best/, plots/ and coverage/ into OUT (with coverage alone: into OUT/screening). What units
 // were found there, made by the same program of the same scenario and configuration, is not done again. Throws Error for what is wrong with
-// the study before anything is driven; what goes wrong in a drive stands with its candidate.
+// the study before anything is driven; what goes wrong in a drive stands with its candidate. What another mapper leaves is put into
+// OUT/drives/CANDIDATE-HALL-SEED where it fails, and where external_mapper.keep_recording says so.
 StudySummary run_study(const StudyRequest& request, const StudyHooks& hooks = {});
 
 }  // namespace waretwin

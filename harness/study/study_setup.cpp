@@ -7,6 +7,8 @@
 #include "core/config_value.h"
 #include "core/digest.h"
 #include "core/error.h"
+#include "harness/gate/measures.h"
+#include "harness/run/external_run.h"
 #include "harness/study/condition.h"
 #include "harness/study/study.h"
 #include "harness/study/study_results.h"
@@ -113,6 +115,19 @@ bool judges_surface(const StudyConfig& study) {
   return any(study.judge.measures) || any(study.judge.pareto) || any(study.constraints) || is_surface(study.judge.best_by);
 }
 
+// By what another mapper has no value of nobody is the best; in tables it is missing.
+void expect_judged_without_ours(const StudyConfig& study) {
+  const auto check = [](const std::string& key, const std::string& name) {
+    for (const Measure& measure : measures()) {
+      if (measure.ours && name == measure.name)
+        throw Error(key + ": " + name + " comes of our own mapper's stages; expected another measure with another mapper");
+    }
+  };
+  check("judge.best_by", study.judge.best_by);
+  for (const std::string& name : study.judge.pareto) check("judge.pareto", name);
+  for (const std::string& text : study.constraints) check("constraints", Condition::parse(text).name());
+}
+
 RunConfig configuration(const StudyConfig& study, const StudyRequest& request, const HallBase& hall, const std::vector<Setting>& varied) {
   const fs::path folder = request.file.parent_path();
   RunChoice choice = study.run.choice;
@@ -130,6 +145,11 @@ RunConfig configuration(const StudyConfig& study, const StudyRequest& request, c
   all.insert(all.end(), varied.begin(), varied.end());
   RunConfig config = load_run_config(hall.scenario, std::move(base), study.vehicle.empty() ? fs::path() : folder / study.vehicle, all);
   if (!study.vehicle_model.empty()) config.scenario.robot.model = fs::absolute(folder / study.vehicle_model);
+  if (config.external_mapper.used()) {
+    expect_none_of_ours(choice);
+    check_external(config);
+    expect_judged_without_ours(study);
+  }
   return config;
 }
 
@@ -259,7 +279,7 @@ StudySetup set_up_study(const StudyRequest& request, const std::function<void()>
   looked_at("the baseline", [&] {
     baseline.values = present_values(study, baseline);
     const RunConfig& config = baseline.halls.front().config;
-    if (!config.truth_stages.detector) make_detector(config.mapper);  // throws where it cannot be
+    if (!config.truth_stages.detector && !config.external_mapper.used()) make_detector(config.mapper);  // throws where it cannot be
   });
   baseline.refused = broken_by_values(study, baseline.values).value_or("");
   const std::vector<std::string> baseline_texts = texts_of(baseline);

@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/staged_folder.h"
 #include "harness/gate/comparison.h"
+#include "harness/run/external_run.h"
 #include "harness/run/run_folder.h"
 #include "harness/score/motion_text.h"
 #include "harness/score/score_json.h"
@@ -51,6 +52,13 @@ std::string unit_of(const ReadyRun& run, const SuiteConfig& suite, const std::st
   return digest.hex();
 }
 
+void expect_no_marks_of_ours(const PassMarks& pass) {
+  for (std::size_t i = 0; i < measures().size(); ++i) {
+    if (measures()[i].ours && pass.measures.values[i])
+      throw Error("pass." + std::string(measures()[i].name) + ": comes of our own mapper's stages; expected none with another mapper");
+  }
+}
+
 ReadyRun make_ready(const std::string& name, const SuiteRun& run, const SuiteConfig& suite, const SuiteRequest& request,
                     const std::function<void()>& check) {
   const fs::path& file = request.file;
@@ -64,7 +72,13 @@ ReadyRun make_ready(const std::string& name, const SuiteRun& run, const SuiteCon
   for (const std::string& text : run.set) all.push_back(parse_setting(text));
   all.insert(all.end(), request.settings.begin(), request.settings.end());
   ready.config = load_run_config(ready.scenario, chosen_run(choice), run.config.empty() ? fs::path() : beside(file, run.config), all);
-  if (!ready.config.truth_stages.detector) make_detector(ready.config.mapper);  // throws where it cannot be
+  if (ready.config.external_mapper.used()) {
+    expect_none_of_ours(choice);
+    check_external(ready.config);
+    expect_no_marks_of_ours(run.pass);
+  } else if (!ready.config.truth_stages.detector) {
+    make_detector(ready.config.mapper);  // throws where it cannot be
+  }
   ready.pass = run.pass;
   std::string baseline_bytes;
   if (!run.baseline.empty()) {
@@ -97,32 +111,67 @@ std::optional<SuiteOutcome> stored(const ReadyRun& run, const UnitStore& store) 
 // The folder of a run appears when all its files are there; kUnit in it says which unit's they are.
 constexpr const char* kUnit = "unit.txt";
 
+void write_settings(RunFolder& folder, const ReadyRun& run) {
+  RunConfig resolved = run.config;
+  folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + run.scenario));
+  folder.write(kUnit, run.unit + "\n");
+}
+
+void judge(const ReadyRun& run, const RunScore& score, const Tolerances& tolerances, const fs::path& out, SuiteOutcome& outcome) {
+  const JudgedScore judged = judged_score(score_json(score), out / run.name / "score.json");
+  outcome.digest = score.digest;
+  outcome.values = judged.values;
+  outcome.problems = problems_of(run, score, judged, tolerances);
+}
+
+void drive_ours(const ReadyRun& run, const std::shared_ptr<const Scene>& scene, const SuiteConfig& suite, const fs::path& out,
+                const std::function<void(double)>& progress, SuiteOutcome& outcome) {
+  const ClosedLoopResult result = run_closed_loop(run.config, scene, {}, [&](double share, const ObjectMap&) { progress(share); });
+  StagedFolder staged(out / run.name);
+  RunFolder folder(staged.path());
+  write_settings(folder, run);
+  write_closed_loop(folder, result, run.config.output);
+  staged.commit();
+  judge(run, result.score, suite.tolerances, out, outcome);
+}
+
+// What the command leaves is kept, also where it fails: the recording and its words are what the failure is found by.
+void drive_external(const ReadyRun& run, const std::shared_ptr<const Scene>& scene, const SuiteConfig& suite, const fs::path& out,
+                    const std::function<void(double)>& progress, SuiteOutcome& outcome) {
+  StagedFolder staged(out / run.name);
+  RunFolder folder(staged.path());
+  const auto ready = [&]() -> RunFolder& {
+    write_settings(folder, run);
+    return folder;
+  };
+  const ExternalRunResult result = run_external(run.config, scene, ready, [&](double share, const std::string&) { progress(share); });
+  write_external(folder, run.config, result);
+  staged.commit();
+  if (!result.score) {
+    outcome.problems = {failure_text(result, run.name)};
+    return;
+  }
+  judge(run, *result.score, suite.tolerances, out, outcome);
+  const std::string trajectory = trajectory_text(result, run.name);
+  if (!trajectory.empty()) outcome.problems.push_back(trajectory);
+}
+
 SuiteOutcome drive(const ReadyRun& run, const SuiteConfig& suite, const fs::path& out, const std::function<void(double)>& progress) {
   SuiteOutcome outcome;
   outcome.run = run.name;
   outcome.cpu = cpu_identity();
   std::exception_ptr stopped;  // by the caller, which is no fault of the run
+  const auto told = [&](double share) {
+    try {
+      progress(share);
+    } catch (...) {
+      stopped = std::current_exception();
+      throw;
+    }
+  };
   try {
     const auto scene = std::make_shared<const Scene>(build_scene(run.config.scenario));
-    const ClosedLoopResult result = run_closed_loop(run.config, scene, {}, [&](double share, const ObjectMap&) {
-      try {
-        progress(share);
-      } catch (...) {
-        stopped = std::current_exception();
-        throw;
-      }
-    });
-    StagedFolder staged(out / run.name);
-    RunFolder folder(staged.path());
-    RunConfig resolved = run.config;
-    folder.write("config.yaml", resolved_config([&](Fields& f) { resolved.visit(f); }, "scenario " + run.scenario));
-    folder.write(kUnit, run.unit + "\n");
-    write_closed_loop(folder, result, run.config.output);
-    staged.commit();
-    const JudgedScore judged = judged_score(score_json(result.score), out / run.name / "score.json");
-    outcome.digest = result.score.digest;
-    outcome.values = judged.values;
-    outcome.problems = problems_of(run, result.score, judged, suite.tolerances);
+    (run.config.external_mapper.used() ? drive_external : drive_ours)(run, scene, suite, out, told, outcome);
   } catch (const Error& error) {
     if (stopped) std::rethrow_exception(stopped);
     outcome.error = error.what();
@@ -130,7 +179,8 @@ SuiteOutcome drive(const ReadyRun& run, const SuiteConfig& suite, const fs::path
   return outcome;
 }
 
-// A result that driving again would only repeat. What could not be driven may have been the disk's fault.
+// A result that driving again would only repeat. What could not be driven may have been the disk's fault, and a mapper that failed (no
+// score.json) may be mended.
 bool is_done(const ReadyRun& run, const UnitStore& store, const fs::path& out) {
   const std::optional<SuiteOutcome> before = stored(run, store);
   const fs::path folder = out / run.name;
@@ -171,6 +221,8 @@ SuiteSummary run_suite(const SuiteRequest& request, const SuiteHooks& hooks) {
     check();
     if (is_done(run, store, out)) {
       ++summary.found;
+      const ExternalMapper& mapper = run.config.external_mapper;
+      if (mapper.used() && mapper.depends.empty()) ++summary.found_unwatched;
       continue;
     }
     const SuiteOutcome outcome = drive(run, suite, out, [&](double share) {

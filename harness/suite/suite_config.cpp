@@ -35,9 +35,10 @@ void SuiteRun::visit(Fields& f) {
   }
   const RunChoice usual;
   const bool chosen = choice.profile != usual.profile || choice.detector || !choice.poses.empty() || choice.depth != usual.depth ||
-                      choice.association != usual.association || choice.rate_hz || choice.frames != 0;
+                      choice.association != usual.association || choice.rate_hz || choice.frames != 0 || choice.external_mapper.used();
   if (!config.empty() && chosen)
-    f.reject("config", "settles profile, detector, poses, depth, association, rate_hz and frames; expected none of them beside it");
+    f.reject("config",
+             "settles profile, detector, poses, depth, association, rate_hz, frames and external_mapper; expected none of them beside it");
   check_hall_source(f, scenario, generate);
 }
 
@@ -45,10 +46,16 @@ void SuiteConfig::visit(Fields& f) {
   f("name", name, "of the suite, in reports");
   f.map("runs", runs, "runs by name");
   f.group("tolerances", tolerances, "how much worse than its baseline a score may be");
+  f.group("external_mapper", external_mapper,
+          "another mapper in place of ours, for each run; what a run's own external_mapper names counts more");
 }
 
 SuiteConfig read_suite(const std::filesystem::path& file) {
+  SuiteConfig first;
+  read_config(file, [&](Fields& f) { f.group("suite", first, "runs with pass marks"); });
+  // Once more over the suite's own mapper, key by key.
   SuiteConfig suite;
+  for (const auto& entry : first.runs) suite.runs[entry.first].choice.external_mapper = first.external_mapper;
   read_config(file, [&](Fields& f) { f.group("suite", suite, "runs with pass marks"); });
   if (suite.runs.empty()) throw Error(file, "suite.runs is empty; expected runs by name");
   for (const auto& entry : suite.runs) {

@@ -11,6 +11,7 @@
 //       hall:
 //         scenario: hall/scenario.yaml
 //         baseline: baselines/hall.json
+//     external_mapper: {command: "my_mapper {recording} {out}"}   # in place of ours, in every run that names no other
 #pragma once
 
 #include <cstdint>
@@ -42,6 +43,7 @@ struct SuiteConfig {
   std::string name = "suite";
   std::map<std::string, SuiteRun> runs;  // by names, which become folders
   Tolerances tolerances;                 // against baselines
+  ExternalMapper external_mapper;        // what each run's has where the run itself says nothing
 
   void visit(Fields& f);
 };

@@ -150,6 +150,21 @@ TEST(Gate, WhatIsGoneIsWorseAndWhatIsNewIsNot) {
   EXPECT_EQ(verdict_of(compare_scores(without, with, {}), "ate_rmse_m"), Verdict::kNotJudged);
 }
 
+// Whoever has no surface and no detector of ours has lost none.
+TEST(Gate, AnotherMapperIsNotJudgedByOurStages) {
+  const std::string rest = R"("schema": 1, "summary": {"recall": 1.0}, "frames": {"without_pose": 0})";
+  const JudgedScore ours = judged_score("{\"profile\": \"best\", \"surface\": {\"found\": 0.9}, " + rest + "}", "ours.json");
+  const JudgedScore theirs = judged_score("{\"profile\": \"mapper\", " + rest + "}", "theirs.json");
+  const auto values_of = [](const JudgedScore& score) {
+    return std::count_if(score.values.begin(), score.values.end(), [](const auto& value) { return value.has_value(); });
+  };
+  EXPECT_EQ(values_of(ours), 3);
+  EXPECT_EQ(values_of(theirs), 1) << "nobody asked it for its poses";
+  EXPECT_FALSE(compare_scores(ours, theirs, Tolerances()).worse());
+  const JudgedScore lost = judged_score(R"({"schema": 1, "profile": "mapper", "summary": {"recall": 0.5}})", "lost.json");
+  EXPECT_TRUE(compare_scores(ours, lost, Tolerances()).worse());
+}
+
 TEST(Gate, TimesAreJudgedWhereTheyHaveATolerance) {
   JudgedScore before = two_found(), after = before;
   set_value(after, "frame_median_ms", 100.0);

@@ -122,7 +122,7 @@ TEST(VoxbloxppProfile, AnObjectHasAllThePointsThatTheVolumeLabels) {
     std::sort(all.begin(), all.end(), before);
     // A voxel may have gone to the background since, whose segments are one at the end.
     EXPECT_TRUE(std::includes(listed.begin(), listed.end(), all.begin(), all.end(), before));
-    EXPECT_GT(all.size(), 0.95 * static_cast<double>(listed.size()));
+    EXPECT_GT(all.size(), 0.9 * static_cast<double>(listed.size()));
   }
 }
 
