@@ -6,8 +6,6 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/LaserScan.h>
-#include <tf2/buffer_core.h>
-#include <tf2/exceptions.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <cmath>
@@ -18,6 +16,7 @@
 
 #include "core/error.h"
 #include "sensors/recordings/bag_pictures.h"
+#include "sensors/recordings/bag_transforms.h"
 #include "sensors/recordings/ros_bag.h"
 #include "sensors/recordings/stamped_files.h"
 
@@ -39,19 +38,9 @@ bool ends_with(const std::string& text, const std::string& tail) {
   return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
 }
 
-// As tf2 calls frames: without tf's old leading slash.
-std::string frame_name(const std::string& name) { return name.rfind('/', 0) == 0 ? name.substr(1) : name; }
-
 template <class T, class Predicate>
 void erase_if(std::vector<T>& values, const Predicate& predicate) {
   values.erase(std::remove_if(values.begin(), values.end(), predicate), values.end());
-}
-
-Pose pose_of(const geometry_msgs::Transform& t) {
-  Pose pose = Pose::Identity();
-  pose.translation() = Eigen::Vector3d(t.translation.x, t.translation.y, t.translation.z);
-  pose.linear() = Eigen::Quaterniond(t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z).normalized().toRotationMatrix();
-  return pose;
 }
 
 // The library's faults as ours.
@@ -176,6 +165,7 @@ class BagReader {
                   "holds neither pictures with depth nor scans; expected topics of sensor_msgs/Image or sensor_msgs/LaserScan");
     }
     mount_sensors();
+    find_poses();
     for (const auto& [what, topic] : {std::pair{"pictures", colour_topic_},
                                       {"depth", depth_topic_},
                                       {"own images of the depth camera", native_topic_},
@@ -436,23 +426,8 @@ class BagReader {
       ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
       ros::serialization::deserialize(in, transforms);
     }
-    for (geometry_msgs::TransformStamped& t : transforms) {
-      t.header.frame_id = frame_name(t.header.frame_id);
-      t.child_frame_id = frame_name(t.child_frame_id);
-      const auto& p = t.transform.translation;
-      const auto& q = t.transform.rotation;
-      const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-      if (!std::isfinite(p.x + p.y + p.z) || !(std::abs(norm - 1.0) < 0.01)) {
-        ++bad_transforms_;
-        continue;
-      }
-      t.header.stamp = tf_time(t.header.stamp);
-      tf_.setTransform(t, "bag", fixed);  // false for one that was there before
-    }
+    for (geometry_msgs::TransformStamped& transform : transforms) bad_transforms_ += tf_.add(std::move(transform), fixed) ? 0 : 1;
   }
-
-  // Time 0 means "the latest" to tf.
-  static ros::Time tf_time(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
 
   // In order of stamps; of one stamp the first.
   template <class T>
@@ -507,14 +482,8 @@ class BagReader {
             }};
   }
 
-  // Where a frame is on the vehicle, by the last transforms of the bag; nothing where tf does not say.
-  std::optional<Pose> on_vehicle(const std::string& frame) const {
-    try {
-      return pose_of(tf_.lookupTransform(frame_name(config_.bag.base_frame), frame, ros::Time(0)).transform);
-    } catch (const tf2::TransformException&) {
-      return std::nullopt;
-    }
-  }
+  // Where a frame is on the vehicle; nothing where tf does not say.
+  std::optional<Pose> on_vehicle(const std::string& frame) const { return tf_.last(config_.bag.base_frame, frame); }
 
   void mount_sensors() {
     if (!config_.bag.camera_frame.empty()) camera_frame_ = frame_name(config_.bag.camera_frame);
@@ -532,23 +501,28 @@ class BagReader {
     expect_registered_depth();
     see_native_depth();
     if (contents_.has_laser) contents_.X_BL = mount(laser_frame_, config_.laser_mount, "laser");
-    if (config_.bag.world_frame.empty()) return;
-    std::size_t unknown = 0;
+  }
+
+  // Of the frames, where tf says how the camera stands in the world.
+  void find_poses() {
+    const std::string& world = config_.bag.world_frame;
+    if (world.empty() || contents_.frames.empty()) return;
+    const Stamp max_gap = from_seconds(config_.max_pose_gap_s);
+    std::size_t unknown = 0, in_gaps = 0;
     for (RecordedFrame& frame : contents_.frames) {
       const Stamp stamp = frame.stamp + from_seconds(config_.clock.colour_s);  // as tf's clock has it
-      const ros::Time time(static_cast<std::uint32_t>(stamp / kNanosecondsPerSecond),
-                           static_cast<std::uint32_t>(stamp % kNanosecondsPerSecond));
-      try {
-        frame.X_WC = pose_of(tf_.lookupTransform(frame_name(config_.bag.world_frame), camera_frame_, tf_time(time)).transform);
-      } catch (const tf2::TransformException&) {
-        ++unknown;
-      }
+      const BagTransforms::Found found = tf_.at(world, camera_frame_, stamp, max_gap);
+      frame.X_WC = found.X;
+      if (!found.X) ++(found.in_gap ? in_gaps : unknown);
     }
-    if (!contents_.frames.empty() && unknown == contents_.frames.size()) {
-      throw Error(bag_->file(), "tf says of no frame where the camera (frame '" + camera_frame_ + "') is in the world (frame '" +
-                                    config_.bag.world_frame + "'); expected recording.bag.world_frame to be one that tf knows");
+    if (unknown + in_gaps == contents_.frames.size()) {
+      throw Error(bag_->file(),
+                  "tf says of no frame where the camera (frame '" + camera_frame_ + "') is in the world (frame '" + world +
+                      "'); expected " +
+                      (in_gaps > 0 ? "messages at most recording.max_pose_gap_s apart, " + std::to_string(config_.max_pose_gap_s) + " s"
+                                   : "recording.bag.world_frame to be one that tf knows"));
     }
-    if (unknown > 0) contents_.remarks.push_back(std::to_string(unknown) + " frames have no pose in tf");
+    remark_without_pose(contents_, unknown, in_gaps, "tf", config_.max_pose_gap_s);
   }
 
   // Depth of another view than the picture's would be mapped beside the objects.
@@ -608,7 +582,7 @@ class BagReader {
   std::string camera_frame_, depth_frame_, native_frame_, laser_frame_;
   std::optional<sensor_msgs::CameraInfo> first_info_, depth_info_, native_info_;
   std::vector<Picture> colours_, depths_, natives_;
-  tf2::BufferCore tf_{ros::Duration(1e6)};  // nothing is forgotten
+  BagTransforms tf_;
   std::size_t bad_readings_ = 0, bad_scans_ = 0, bad_transforms_ = 0;
   RecordingContents contents_;
 };

@@ -38,4 +38,13 @@ void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size
   say(depths, "depth images", "colour picture");
 }
 
+void remark_without_pose(RecordingContents& contents, std::size_t unknown, std::size_t in_gaps, const std::string& poses,
+                         double max_gap_s) {
+  if (unknown > 0) contents.remarks.push_back(std::to_string(unknown) + " frames have no pose in " + poses);
+  if (in_gaps > 0) {
+    contents.remarks.push_back(std::to_string(in_gaps) + " frames have no pose: they lie in gaps of " + poses + " of more than " +
+                               std::to_string(max_gap_s) + " s (recording.max_pose_gap_s)");
+  }
+}
+
 }  // namespace waretwin

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -54,5 +55,8 @@ inline Stamp depth_delay(const RecordingConfig& config) { return from_seconds(co
 
 // Says how many pictures stayed without a partner.
 void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size_t depths, double tolerance_s);
+
+// Says how many frames stayed without a pose: those of whose time the `poses` (tf, or a file) say nothing, and those in gaps of them.
+void remark_without_pose(RecordingContents& contents, std::size_t unknown, std::size_t in_gaps, const std::string& poses, double max_gap_s);
 
 }  // namespace waretwin
