@@ -32,6 +32,8 @@ constexpr const char* kCameraInfo = "sensor_msgs/CameraInfo";
 constexpr const char* kLaserScan = "sensor_msgs/LaserScan";
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 
+constexpr const char* kNone = "none";  // as the name of a topic: not to be read
+
 Stamp stamp_of_time(const ros::Time& time) { return static_cast<Stamp>(time.sec) * kNanosecondsPerSecond + time.nsec; }
 
 bool ends_with(const std::string& text, const std::string& tail) {
@@ -154,6 +156,14 @@ class BagReader {
       choose_topics();
       read_messages();
     });
+    const auto expect = [&](const auto& values, const std::string& what, const std::string& topic, const std::string& key = "") {
+      expect_times(values, bag_->file(), what + " (" + topic + ")", key.empty() ? "" : "or recording.bag." + key + "=none");
+    };
+    expect(colours_, "pictures", colour_topic_);
+    expect(depths_, "depth images", depth_topic_);
+    expect(natives_, "native depth images", native_topic_, "native_depth_topic");
+    expect(contents_.scans, "scans", laser_topic_, "laser_topic");
+    expect(contents_.readings, "odometry readings", odometry_topic_, "odometry_topic");
     sort_and_thin(colours_, "pictures");
     sort_and_thin(depths_, "depth images");
     sort_and_thin(natives_, "native depth images");
@@ -200,8 +210,12 @@ class BagReader {
     colour_topic_ = topics_.choose("colour_topic", names.colour_topic, {kImage, kCompressed}, without_twins(colours), preset.colour_topic);
     depth_topic_ =
         topics_.choose("depth_topic", names.depth_topic, {kImage, kCompressed}, registered_ones(without_twins(depths)), preset.depth_topic);
-    laser_topic_ = topics_.choose("laser_topic", names.laser_topic, {kLaserScan}, topics_.of({kLaserScan}));
-    odometry_topic_ = topics_.choose("odometry_topic", names.odometry_topic, {kOdometry}, topics_.of({kOdometry}));
+    if (names.laser_topic != kNone) {
+      laser_topic_ = topics_.choose("laser_topic", names.laser_topic, {kLaserScan}, topics_.of({kLaserScan}));
+    }
+    if (names.odometry_topic != kNone) {
+      odometry_topic_ = topics_.choose("odometry_topic", names.odometry_topic, {kOdometry}, topics_.of({kOdometry}));
+    }
     if (colour_topic_.empty() && !depth_topic_.empty()) {
       std::string there;
       for (const std::string& other : others) there += (there.empty() ? "" : ", ") + other;
@@ -234,7 +248,7 @@ class BagReader {
   // The depth camera's own images are of the same device as the pictures: /front/camera/depth/.. goes with /front/camera/rgb/..
   void choose_native_topic(std::vector<std::string> depths) {
     const std::string& named = config_.bag.native_depth_topic;
-    if (named == "none") return;
+    if (named == kNone) return;
     const auto device = [](const std::string& topic) {
       const std::string camera = info_beside(topic);
       return camera.substr(0, camera.rfind('/', camera.rfind('/') - 1));

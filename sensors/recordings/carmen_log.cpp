@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "sensors/recordings/stamped_files.h"
 #include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
@@ -59,6 +60,8 @@ class Reader {
 
   RecordingContents finish() {
     if (contents_.scans.empty()) throw Error(file_, "holds no FLASER line; expected a CARMEN log with laser scans");
+    expect_times(contents_.scans, file_, "FLASER lines");
+    expect_times(contents_.readings, file_, "ODOM lines");
     contents_.has_laser = true;
     contents_.X_BL = make_upright_pose(offset_, 0.0, 0.0, 0.0);
     contents_.laser_rate_hz = rate_hz();

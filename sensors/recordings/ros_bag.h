@@ -26,8 +26,9 @@ std::optional<std::filesystem::path> bag_in(const std::filesystem::path& folder)
 //               most max_pose_gap_s apart
 // Stamps are those of the messages' headers; messages may come in any order, those of a stamp that was there before are left out, and
 // pictures without a partner within association_s are, too; remarks say how many. Pictures stay in the file until a frame is loaded.
-// Throws Error for a damaged or unindexed bag, for a topic that is missing, ambiguous or of another type (naming the key and what is
-// there), for encodings that are not read, and where tf does not connect the vehicle with a sensor that has no mount otherwise.
+// Throws Error for a damaged or unindexed bag, for a topic whose messages all have one stamp, for a topic that is missing, ambiguous or of
+// another type (naming the key and what is there), for encodings that are not read, and where tf does not connect the vehicle with a sensor
+// that has no mount otherwise.
 RecordingContents read_ros_bag(const std::filesystem::path& file, const RecordingConfig& config);
 
 // recording.bag in the folder; recording_writer.h lists its topics. Equal streams give equal bytes.

@@ -9,6 +9,11 @@ namespace waretwin {
 
 namespace fs = std::filesystem;
 
+void refuse_one_stamp(const fs::path& file, std::size_t count, const std::string& what, Stamp stamp, const std::string& expected) {
+  throw Error(file, "all " + std::to_string(count) + " " + what + " have the stamp " + stamp_text(stamp) +
+                        "; expected the time at which each was taken" + (expected.empty() ? "" : ", " + expected));
+}
+
 std::vector<StampedFile> read_file_list(const fs::path& list) {
   std::vector<StampedFile> files;
   for (const TextLine& line : read_text_lines(list)) {
@@ -24,6 +29,7 @@ std::vector<StampedFile> read_file_list(const fs::path& list) {
     if (!fs::exists(file)) throw Error(list, line.line, "'" + line.words[1] + "' does not exist");
     files.push_back({parse_text_stamp(list, line.line, line.words[0]), file});
   }
+  expect_times(files, list, "files");
   sort_by_stamp(files);
   return files;
 }

@@ -19,12 +19,25 @@ struct StampedFile {
 };
 
 // Lines "seconds file", sorted by stamp; files relative to the list. Throws Error with file and line for a malformed line, and for a file
-// that is missing or outside the list's folder.
+// that is missing or outside the list's folder, and where all have one stamp.
 std::vector<StampedFile> read_file_list(const std::filesystem::path& list);
 
 template <class T>
 void sort_by_stamp(std::vector<T>& values) {
   std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
+}
+
+// Throws Error that `count` readings of `what` in the file all have one stamp, and says what is `expected` beside times ("", or "or ..").
+[[noreturn]] void refuse_one_stamp(const std::filesystem::path& file, std::size_t count, const std::string& what, Stamp stamp,
+                                   const std::string& expected);
+
+// Of readings that all have one stamp (0, of a driver that sets none) nobody knows when they were taken: two or more are refused.
+template <class T>
+void expect_times(const std::vector<T>& values, const std::filesystem::path& file, const std::string& what,
+                  const std::string& expected = "") {
+  const auto same = [&](const T& value) { return value.stamp == values.front().stamp; };
+  if (values.size() < 2 || !std::all_of(values.begin(), values.end(), same)) return;
+  refuse_one_stamp(file, values.size(), what, values.front().stamp, expected);
 }
 
 // Index of the nearest stamp; `sorted` is not empty.

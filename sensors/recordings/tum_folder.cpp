@@ -40,6 +40,7 @@ std::vector<StampedPose> read_trajectory(const fs::path& file) {
     pose.X_WC.linear() = rotation.normalized().toRotationMatrix();
     poses.push_back(pose);
   }
+  expect_times(poses, file, "poses");
   sort_by_stamp(poses);
   return poses;
 }

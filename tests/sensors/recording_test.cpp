@@ -249,6 +249,11 @@ TEST_F(TumFolder, CalibrationFilesAndScaleCount) {
   EXPECT_ERROR(open_recording(path()), "calibration.txt", "expected 'fx fy cx cy'");
 }
 
+TEST_F(TumFolder, FilesOfOneStampAreRefused) {
+  write("rgb.txt", "0 rgb/0.png\n0 rgb/1.png\n");
+  EXPECT_ERROR(open_recording(path()), "rgb.txt: all 2 files have the stamp 0.000000000; expected the time at which each was taken");
+}
+
 TEST_F(TumFolder, DamageIsNamed) {
   write("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 0\n");
   EXPECT_ERROR(open_recording(path()), "groundtruth.txt:2:", "not a pose");
@@ -356,6 +361,13 @@ TEST_F(SceneNnFolder, ReadsItsIntrinsicsAndExactStamps) {
   write("stamps.txt", "1 1\n");
   write("intrinsic/asus.ini", "depth_width 8\ndepth_height 6\nfx 50\nfy 51\n");
   EXPECT_ERROR(open_recording(path()), "stamps.txt", "no stamp for frame 2");
+}
+
+TEST_F(SceneNnFolder, FramesOfOneStampAreRefused) {
+  write("timestamp.txt", "1 0 0\n2 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "timestamp.txt: all 2 frames have the stamp 0.000000000; expected the time", "or no such file");
+  write("stamps.txt", "1 7\n2 7\n");
+  EXPECT_ERROR(open_recording(path()), "stamps.txt: all 2 frames have the stamp 7.000000000");
 }
 
 TEST_F(SceneNnFolder, SaysWhatIsLeftOutAndWhatIsDamaged) {

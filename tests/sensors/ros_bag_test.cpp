@@ -194,6 +194,35 @@ TEST_F(RosBag, SortsWhatCameOutOfOrderAndLeavesOutWhatHasNoPartner) {
   }
 }
 
+// Some drivers set no stamps.
+TEST_F(RosBag, ReadingsOfOneStampAreRefused) {
+  mounts();
+  for (const double t : {1.0, 2.0, 3.0}) {
+    frame(t);
+    auto reading = odometry(t, t, 0);
+    reading.header.stamp = ros::Time(0, 0);
+    write("/odom", t, reading);
+    write("/scan", t, scan(1.5));
+  }
+  bag_.close();
+  RecordingConfig config;
+  EXPECT_ERROR(open_recording(file(), config), "drive.bag: all 3 scans (/scan) have the stamp 1600000001.5", "expected the time",
+               "recording.bag.laser_topic=none");
+  config.bag.laser_topic = "none";
+  EXPECT_ERROR(open_recording(file(), config), "all 3 odometry readings (/odom) have the stamp 0.000000000", "odometry_topic=none");
+  config.bag.odometry_topic = "none";
+  const auto recording = open_recording(file(), config);
+  EXPECT_EQ(recording->info().frame_count, 3);
+  EXPECT_FALSE(recording->info().has_odometry);
+  EXPECT_TRUE(recording->info().lasers.empty());
+}
+
+TEST_F(RosBag, PicturesOfOneStampAreRefused) {
+  mounts();
+  for (int i = 0; i < 4; ++i) frame(0.0, 1.0 + i);
+  EXPECT_ERROR(open(), "all 4 pictures (/cam/color/image_raw) have the stamp 1600000000.000000000; expected the time");
+}
+
 TEST_F(RosBag, ClocksAreShiftedBeforePicturesArePaired) {
   mounts();
   write("/cam/color/camera_info", 1, camera_info(1));
