@@ -183,8 +183,8 @@ class BagReader {
                                       {"odometry", odometry_topic_}}) {
       if (!topic.empty()) contents_.sources.push_back(std::string(what) + ": " + topic);
     }
-    contents_.laser_rate_hz = rate_of(contents_.scans);
-    contents_.rate_hz = rate_of(contents_.frames);
+    contents_.laser_rate_hz = median_rate_hz(contents_.scans);
+    contents_.rate_hz = median_rate_hz(contents_.frames);
     return std::move(contents_);
   }
 
@@ -576,17 +576,6 @@ class BagReader {
   }
 
   bool has_calibration_beside() const { return fs::exists(bag_->file().parent_path() / "recording.yaml"); }
-
-  // By the median time between two.
-  template <class T>
-  static double rate_of(const std::vector<T>& values) {
-    std::vector<Stamp> steps;
-    for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i].stamp - values[i - 1].stamp);
-    if (steps.empty()) return 1.0;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return 1.0 / to_seconds(std::max<Stamp>(*middle, 1));
-  }
 
   const RecordingConfig& config_;
   std::shared_ptr<OpenBag> bag_;

@@ -64,7 +64,7 @@ class Reader {
     expect_times(contents_.readings, file_, "ODOM lines");
     contents_.has_laser = true;
     contents_.X_BL = make_upright_pose(offset_, 0.0, 0.0, 0.0);
-    contents_.laser_rate_hz = rate_hz();
+    contents_.laser_rate_hz = median_rate_hz(contents_.scans);
     for (LaserScan& scan : contents_.scans) {
       scan.range_max = range_max_;
       for (float& range : scan.ranges) range = range < range_max_ ? range : 0.0f;
@@ -140,17 +140,6 @@ class Reader {
     } else if (words_[1] == "robot_frontlaser_offset") {
       offset_ = number(2);
     }
-  }
-
-  // By the median time between scans: logs have gaps.
-  double rate_hz() const {
-    std::vector<Stamp> steps;
-    const std::vector<LaserScan>& scans = contents_.scans;
-    for (std::size_t i = 1; i < scans.size(); ++i) steps.push_back(std::abs(scans[i].stamp - scans[i - 1].stamp));
-    if (steps.empty()) return 0.0;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    const Stamp median = steps[steps.size() / 2];
-    return median > 0 ? 1.0 / to_seconds(median) : 0.0;
   }
 
   fs::path file_;

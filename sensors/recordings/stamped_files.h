@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -38,6 +39,17 @@ void expect_times(const std::vector<T>& values, const std::filesystem::path& fil
   const auto same = [&](const T& value) { return value.stamp == values.front().stamp; };
   if (values.size() < 2 || !std::all_of(values.begin(), values.end(), same)) return;
   refuse_one_stamp(file, values.size(), what, values.front().stamp, expected);
+}
+
+// Readings a second, by the median time between two: recordings have gaps. 0 where that is not known.
+template <class T>
+double median_rate_hz(const std::vector<T>& values) {
+  std::vector<Stamp> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(std::abs(values[i].stamp - values[i - 1].stamp));
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle > 0 ? 1.0 / to_seconds(*middle) : 0.0;
 }
 
 // Index of the nearest stamp; `sorted` is not empty.
