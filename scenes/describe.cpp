@@ -1,9 +1,8 @@
 #include "scenes/describe.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
+#include "core/add_line.h"
 #include "core/pose.h"
 
 namespace waretwin {
@@ -12,16 +11,6 @@ namespace {
 
 // What one list shows; halls have hundreds of materials.
 constexpr std::size_t kLongestList = 40;
-
-[[gnu::format(printf, 2, 3)]] void add_line(std::string& text, const char* format, ...) {
-  char line[1024];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-  text += '\n';
-}
 
 template <class T, class AddOne>
 void add_list(std::string& text, const char* title, const std::vector<T>& values, const AddOne& add_one) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/own_name.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/model_file.h"
 #include "scenes/placing.h"
@@ -121,7 +122,7 @@ Scenario load_scenario(const fs::path& file, const std::vector<Setting>& setting
   scenario.robot.folder = folder;
   read_config(file, visit);
   if (!settings.empty()) apply_settings(settings, visit);
-  if (scenario.name.empty()) scenario.name = fs::absolute(file).parent_path().filename().string();
+  if (scenario.name.empty()) scenario.name = own_name(file.parent_path());
   return scenario;
 }
 

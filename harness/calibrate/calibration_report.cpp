@@ -1,10 +1,9 @@
 #include "harness/calibrate/calibration_report.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/add_line.h"
 #include "core/version.h"
 #include "harness/calibrate/extrinsics.h"
 #include "sensors/laser_noise.h"
@@ -16,16 +15,6 @@ namespace waretwin {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-[[gnu::format(printf, 2, 3)]] void add_line(std::string& text, const char* format, ...) {
-  char line[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-  text += '\n';
-}
 
 Json numbers(const Eigen::VectorXd& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
 

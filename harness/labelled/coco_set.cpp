@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "harness/labelled/label_text.h"
 #include "harness/labelled/text_sets.h"
+#include "harness/score/json_text.h"
 
 namespace waretwin {
 
@@ -80,11 +81,7 @@ Json parse(const fs::path& file) {
     if (depth > kDeepest) throw Error(file, "is nested more than " + std::to_string(kDeepest) + " levels deep");
     return !(event == Json::parse_event_t::key && parsed == "segmentation");
   };
-  try {
-    return Json::parse(read_file(file), wanted);
-  } catch (const Json::exception& problem) {
-    throw Error(file, std::string("is not JSON: ") + problem.what());
-  }
+  return parse_json(file, read_file(file), "a labelled set as COCO writes it", wanted);
 }
 
 // Where pictures of a JSON file may lie, best first.

@@ -18,6 +18,7 @@
 #include "harness/run/map_config.h"
 #include "harness/run/run_config.h"
 #include "harness/score/cuboid_file.h"
+#include "harness/score/trajectory_file.h"
 #include "mapper/integrate/tsdf_volume.h"
 #include "mapper/output/map_archive.h"
 #include "scenes/describe.h"
@@ -69,6 +70,20 @@ void describe_map(const std::filesystem::path& file) {
   describe_objects(objects);
 }
 
+// What `map` makes of a laser log: a trajectory and nothing else.
+bool is_laser_map(const std::filesystem::path& folder) {
+  return std::filesystem::exists(folder / "map.json") && std::filesystem::exists(folder / "trajectory.tum") &&
+         !std::filesystem::exists(folder / "cuboids.json");
+}
+
+void describe_laser_map(const std::filesystem::path& folder) {
+  const std::vector<StampedPose> poses = read_trajectory(folder / "trajectory.tum").poses;
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) length_m += (poses[i].X_WB.translation() - poses[i - 1].X_WB.translation()).norm();
+  std::cout << "map of a laser log: " << poses.size() << " poses of the laser in " << to_seconds(poses.back().stamp - poses.front().stamp)
+            << " s, " << length_m << " m long; no objects, for it had no pictures\n";
+}
+
 // What the scans of a recording have in common.
 struct LaserFacts {
   std::size_t beams = 0, readings = 0, valid = 0;
@@ -116,7 +131,9 @@ void describe_recording(const std::filesystem::path& folder, const RecordingConf
   std::optional<Stamp> first;
   Stamp last = 0;
   LaserFacts beams;
-  while (const auto event = stream->next()) {
+  while (auto event = stream->next()) {
+    // Pictures of the wrong size or kind would else come to light in `map`.
+    if (auto* frame = std::get_if<RgbdFrame>(&*event); frame != nullptr && frames == 0) load_pictures(*frame);
     if (const auto* scan = std::get_if<LaserScan>(&*event)) beams.add(*scan);
     last = stamp_of(*event);
     if (!first) first = last;
@@ -175,6 +192,11 @@ int inspect(const InspectOptions& options) {
     return 0;
   }
   if (options.motion_s) throw Error(file, "has no motion; --motion expects a scenario");
+  if (is_laser_map(file)) {
+    if (options.keys) throw Error(file, "has no keys; expected a scenario or a recording's folder");
+    describe_laser_map(file);
+    return 0;
+  }
   if (is_recording_file(file) || (std::filesystem::is_directory(file) && !std::filesystem::exists(file / "cuboids.json"))) {
     MapConfig config;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });

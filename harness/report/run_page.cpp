@@ -15,6 +15,7 @@
 #include "harness/report/page_json.h"
 #include "harness/report/page_mesh.h"
 #include "harness/report/run_facts.h"
+#include "harness/score/json_text.h"
 #include "harness/score/table6.h"
 #include "harness/score/trajectory_file.h"
 #include "harness/score/upright.h"
@@ -239,14 +240,6 @@ Json paper_json() {
   return paper;
 }
 
-Json parsed(const fs::path& file, const std::string& text) {
-  try {
-    return Json::parse(text);
-  } catch (const nlohmann::json::exception& problem) {
-    throw Error(file, "is no JSON (" + std::string(problem.what()) + ")");
-  }
-}
-
 }  // namespace
 
 PageData run_page(const fs::path& folder, const std::string& score) {
@@ -268,10 +261,10 @@ PageData run_page(const fs::path& folder, const std::string& score) {
   json["verdict"] = text_or_null(folder / "baseline.md");
 
   if (!score.empty() || has(folder / "score.json")) {
-    json["score"] = parsed(folder / "score.json", score.empty() ? read_file(folder / "score.json") : score);
+    json["score"] = parse_json<Json>(folder / "score.json", score.empty() ? read_file(folder / "score.json") : score, "a score.json");
     json["kind"] = "run";
   } else if (has(folder / "map.json")) {
-    json["map"] = parsed(folder / "map.json", read_file(folder / "map.json"));
+    json["map"] = parse_json<Json>(folder / "map.json", read_file(folder / "map.json"), "a map.json");
   }
   try {
     add_facts(json);

@@ -10,6 +10,7 @@
 #include "core/version.h"
 #include "harness/pictures/picture_file.h"
 #include "harness/report/page_json.h"
+#include "harness/score/json_text.h"
 
 namespace waretwin {
 
@@ -83,12 +84,7 @@ class Pictures {
 
 PageData study_page(const fs::path& folder) {
   const fs::path file = folder / "results.json";
-  Json study;
-  try {
-    study = Json::parse(read_file(file));
-  } catch (const nlohmann::json::exception& problem) {
-    throw Error(file, "is no JSON (" + std::string(problem.what()) + ")");
-  }
+  Json study = parse_json<Json>(file, read_file(file), "a study's results.json");
   expect_shape(file, study);
   PageData page;
   Json& json = page.json;

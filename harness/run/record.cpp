@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/own_name.h"
 #include "core/staged_folder.h"
 #include "core/version.h"
 #include "harness/run/run_config.h"
@@ -22,10 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // SceneNN calls a scene's annotation as its folder.
-std::string annotation_name(const fs::path& folder) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();
-  return (whole.has_filename() ? whole : whole.parent_path()).filename().string() + ".xml";
-}
+std::string annotation_name(const fs::path& folder) { return own_name(folder) + ".xml"; }
 
 // A folder is replaced as a whole, so nothing but an earlier recording of a simulation may stand in it: a mistyped --out must not cost
 // anybody's files, and a real recording cannot be made again.

@@ -1,11 +1,12 @@
 #include "harness/score/cuboid_file.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/score/farthest.h"
+#include "harness/score/json_text.h"
 
 namespace waretwin {
 
@@ -40,6 +41,12 @@ Eigen::Vector3d vector3(const Json& parent, const char* key, const Place& place)
   return {number(value[0], key, place), number(value[1], key, place), number(value[2], key, place)};
 }
 
+Eigen::Vector3d metres(const Json& parent, const char* key, const Place& place) {
+  const Eigen::Vector3d value = vector3(parent, key, place);
+  if (value.cwiseAbs().maxCoeff() > kFarthest_m) place.fail("'" + std::string(key) + "' is beyond 1e9, expected metres");
+  return value;
+}
+
 double share(const Json& parent, const char* key, const Place& place) {
   const auto found = parent.find(key);
   if (found == parent.end()) return 1.0;
@@ -59,9 +66,9 @@ ListedObject read_object(const Json& json, const std::string& frame, const Place
   if (!class_name.is_string()) place.fail("'class' is " + class_name.dump().substr(0, 40) + ", expected a word");
   object.class_name = class_name.get<std::string>();
   Cuboid cuboid;
-  cuboid.centre = vector3(json, "centre", place);
+  cuboid.centre = metres(json, "centre", place);
   cuboid.yaw = number(need(json, "yaw", place), "yaw", place);
-  cuboid.size = vector3(json, "size", place);
+  cuboid.size = metres(json, "size", place);
   if (cuboid.size.minCoeff() < 0.0) place.fail("'size' has a negative length");
   cuboid.frame = frame;
   object.cuboid = canonical(cuboid);
@@ -74,12 +81,7 @@ ListedObject read_object(const Json& json, const std::string& frame, const Place
 
 std::vector<ListedObject> read_object_list(const std::filesystem::path& file) {
   Place place{file, ""};
-  Json json;
-  try {
-    json = Json::parse(read_file(file));
-  } catch (const Json::exception& e) {
-    place.fail("is not JSON: " + std::string(e.what()));
-  }
+  const Json json = parse_json(file, read_file(file), "an object with a list 'objects'");
   const Json& objects = need(json, "objects", place);
   if (!objects.is_array()) place.fail("'objects' is not a list");
   std::string frame = "world";

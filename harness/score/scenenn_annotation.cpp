@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "harness/score/farthest.h"
 
 namespace waretwin {
 
@@ -90,9 +91,9 @@ std::vector<ListedObject> read_scenenn_annotation(const std::filesystem::path& f
     std::vector<double> n;
     for (double value = 0; in >> value;) n.push_back(value);
     constexpr std::size_t kNumbers = 10;
-    const bool finite = std::all_of(n.begin(), n.end(), [](double v) { return std::isfinite(v); });
-    if (n.size() != kNumbers || !in.eof() || !finite)
-      fail("obbox is '" + box + "'; expected ten numbers: centre, size, quaternion x y z w");
+    const bool in_range = std::all_of(n.begin(), n.end(), [](double v) { return std::abs(v) <= kFarthest_m; });
+    if (n.size() != kNumbers || !in.eof() || !in_range)
+      fail("obbox is '" + box + "'; expected ten numbers up to 1e9: centre, size, quaternion x y z w");
     const Eigen::Vector3d size(n[3], n[4], n[5]);
     const Eigen::Quaterniond turn(n[9], n[6], n[7], n[8]);
     if (size.minCoeff() < 0.0) fail("obbox has a negative length");

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/own_name.h"
 #include "harness/score/truth_file.h"
 
 namespace waretwin {
@@ -36,12 +37,9 @@ std::set<std::string> folders_that(const fs::path& folder, const std::function<b
   return found;
 }
 
-// The folder's name, however the path was written.
+// The map's folder, or its own name where it has one.
 std::string name_of(const fs::path& map_file) {
-  if (map_file.filename() != kMapName) return map_file.stem().string();
-  std::error_code error;
-  const fs::path whole = fs::weakly_canonical(map_file, error);
-  return (error ? map_file : whole).parent_path().filename().string();
+  return map_file.filename() == kMapName ? own_name(map_file.parent_path()) : map_file.stem().string();
 }
 
 MappedSequence read_sequence(const std::string& name, const fs::path& map_file, const fs::path& truth_file) {

@@ -6,8 +6,6 @@
 #include <rosbag/view.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/LaserScan.h>
-#include <tf2/buffer_core.h>
-#include <tf2/exceptions.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <cmath>
@@ -18,6 +16,7 @@
 
 #include "core/error.h"
 #include "sensors/recordings/bag_pictures.h"
+#include "sensors/recordings/bag_transforms.h"
 #include "sensors/recordings/ros_bag.h"
 #include "sensors/recordings/stamped_files.h"
 
@@ -33,25 +32,17 @@ constexpr const char* kCameraInfo = "sensor_msgs/CameraInfo";
 constexpr const char* kLaserScan = "sensor_msgs/LaserScan";
 constexpr const char* kOdometry = "nav_msgs/Odometry";
 
+constexpr const char* kNone = "none";  // as the name of a topic: not to be read
+
 Stamp stamp_of_time(const ros::Time& time) { return static_cast<Stamp>(time.sec) * kNanosecondsPerSecond + time.nsec; }
 
 bool ends_with(const std::string& text, const std::string& tail) {
   return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
 }
 
-// As tf2 calls frames: without tf's old leading slash.
-std::string frame_name(const std::string& name) { return name.rfind('/', 0) == 0 ? name.substr(1) : name; }
-
 template <class T, class Predicate>
 void erase_if(std::vector<T>& values, const Predicate& predicate) {
   values.erase(std::remove_if(values.begin(), values.end(), predicate), values.end());
-}
-
-Pose pose_of(const geometry_msgs::Transform& t) {
-  Pose pose = Pose::Identity();
-  pose.translation() = Eigen::Vector3d(t.translation.x, t.translation.y, t.translation.z);
-  pose.linear() = Eigen::Quaterniond(t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z).normalized().toRotationMatrix();
-  return pose;
 }
 
 // The library's faults as ours.
@@ -165,6 +156,14 @@ class BagReader {
       choose_topics();
       read_messages();
     });
+    const auto expect = [&](const auto& values, const std::string& what, const std::string& topic, const std::string& key = "") {
+      expect_times(values, bag_->file(), what + " (" + topic + ")", key.empty() ? "" : "or recording.bag." + key + "=none");
+    };
+    expect(colours_, "pictures", colour_topic_);
+    expect(depths_, "depth images", depth_topic_);
+    expect(natives_, "native depth images", native_topic_, "native_depth_topic");
+    expect(contents_.scans, "scans", laser_topic_, "laser_topic");
+    expect(contents_.readings, "odometry readings", odometry_topic_, "odometry_topic");
     sort_and_thin(colours_, "pictures");
     sort_and_thin(depths_, "depth images");
     sort_and_thin(natives_, "native depth images");
@@ -176,6 +175,7 @@ class BagReader {
                   "holds neither pictures with depth nor scans; expected topics of sensor_msgs/Image or sensor_msgs/LaserScan");
     }
     mount_sensors();
+    find_poses();
     for (const auto& [what, topic] : {std::pair{"pictures", colour_topic_},
                                       {"depth", depth_topic_},
                                       {"own images of the depth camera", native_topic_},
@@ -183,8 +183,8 @@ class BagReader {
                                       {"odometry", odometry_topic_}}) {
       if (!topic.empty()) contents_.sources.push_back(std::string(what) + ": " + topic);
     }
-    contents_.laser_rate_hz = rate_of(contents_.scans);
-    contents_.rate_hz = rate_of(contents_.frames);
+    contents_.laser_rate_hz = median_rate_hz(contents_.scans);
+    contents_.rate_hz = median_rate_hz(contents_.frames);
     return std::move(contents_);
   }
 
@@ -210,8 +210,12 @@ class BagReader {
     colour_topic_ = topics_.choose("colour_topic", names.colour_topic, {kImage, kCompressed}, without_twins(colours), preset.colour_topic);
     depth_topic_ =
         topics_.choose("depth_topic", names.depth_topic, {kImage, kCompressed}, registered_ones(without_twins(depths)), preset.depth_topic);
-    laser_topic_ = topics_.choose("laser_topic", names.laser_topic, {kLaserScan}, topics_.of({kLaserScan}));
-    odometry_topic_ = topics_.choose("odometry_topic", names.odometry_topic, {kOdometry}, topics_.of({kOdometry}));
+    if (names.laser_topic != kNone) {
+      laser_topic_ = topics_.choose("laser_topic", names.laser_topic, {kLaserScan}, topics_.of({kLaserScan}));
+    }
+    if (names.odometry_topic != kNone) {
+      odometry_topic_ = topics_.choose("odometry_topic", names.odometry_topic, {kOdometry}, topics_.of({kOdometry}));
+    }
     if (colour_topic_.empty() && !depth_topic_.empty()) {
       std::string there;
       for (const std::string& other : others) there += (there.empty() ? "" : ", ") + other;
@@ -244,7 +248,7 @@ class BagReader {
   // The depth camera's own images are of the same device as the pictures: /front/camera/depth/.. goes with /front/camera/rgb/..
   void choose_native_topic(std::vector<std::string> depths) {
     const std::string& named = config_.bag.native_depth_topic;
-    if (named == "none") return;
+    if (named == kNone) return;
     const auto device = [](const std::string& topic) {
       const std::string camera = info_beside(topic);
       return camera.substr(0, camera.rfind('/', camera.rfind('/') - 1));
@@ -436,23 +440,8 @@ class BagReader {
       ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
       ros::serialization::deserialize(in, transforms);
     }
-    for (geometry_msgs::TransformStamped& t : transforms) {
-      t.header.frame_id = frame_name(t.header.frame_id);
-      t.child_frame_id = frame_name(t.child_frame_id);
-      const auto& p = t.transform.translation;
-      const auto& q = t.transform.rotation;
-      const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-      if (!std::isfinite(p.x + p.y + p.z) || !(std::abs(norm - 1.0) < 0.01)) {
-        ++bad_transforms_;
-        continue;
-      }
-      t.header.stamp = tf_time(t.header.stamp);
-      tf_.setTransform(t, "bag", fixed);  // false for one that was there before
-    }
+    for (geometry_msgs::TransformStamped& transform : transforms) bad_transforms_ += tf_.add(std::move(transform), fixed) ? 0 : 1;
   }
-
-  // Time 0 means "the latest" to tf.
-  static ros::Time tf_time(const ros::Time& time) { return std::max(time, ros::TIME_MIN); }
 
   // In order of stamps; of one stamp the first.
   template <class T>
@@ -507,14 +496,8 @@ class BagReader {
             }};
   }
 
-  // Where a frame is on the vehicle, by the last transforms of the bag; nothing where tf does not say.
-  std::optional<Pose> on_vehicle(const std::string& frame) const {
-    try {
-      return pose_of(tf_.lookupTransform(frame_name(config_.bag.base_frame), frame, ros::Time(0)).transform);
-    } catch (const tf2::TransformException&) {
-      return std::nullopt;
-    }
-  }
+  // Where a frame is on the vehicle; nothing where tf does not say.
+  std::optional<Pose> on_vehicle(const std::string& frame) const { return tf_.last(config_.bag.base_frame, frame); }
 
   void mount_sensors() {
     if (!config_.bag.camera_frame.empty()) camera_frame_ = frame_name(config_.bag.camera_frame);
@@ -532,23 +515,28 @@ class BagReader {
     expect_registered_depth();
     see_native_depth();
     if (contents_.has_laser) contents_.X_BL = mount(laser_frame_, config_.laser_mount, "laser");
-    if (config_.bag.world_frame.empty()) return;
-    std::size_t unknown = 0;
+  }
+
+  // Of the frames, where tf says how the camera stands in the world.
+  void find_poses() {
+    const std::string& world = config_.bag.world_frame;
+    if (world.empty() || contents_.frames.empty()) return;
+    const Stamp max_gap = from_seconds(config_.max_pose_gap_s);
+    std::size_t unknown = 0, in_gaps = 0;
     for (RecordedFrame& frame : contents_.frames) {
       const Stamp stamp = frame.stamp + from_seconds(config_.clock.colour_s);  // as tf's clock has it
-      const ros::Time time(static_cast<std::uint32_t>(stamp / kNanosecondsPerSecond),
-                           static_cast<std::uint32_t>(stamp % kNanosecondsPerSecond));
-      try {
-        frame.X_WC = pose_of(tf_.lookupTransform(frame_name(config_.bag.world_frame), camera_frame_, tf_time(time)).transform);
-      } catch (const tf2::TransformException&) {
-        ++unknown;
-      }
+      const BagTransforms::Found found = tf_.at(world, camera_frame_, stamp, max_gap);
+      frame.X_WC = found.X;
+      if (!found.X) ++(found.in_gap ? in_gaps : unknown);
     }
-    if (!contents_.frames.empty() && unknown == contents_.frames.size()) {
-      throw Error(bag_->file(), "tf says of no frame where the camera (frame '" + camera_frame_ + "') is in the world (frame '" +
-                                    config_.bag.world_frame + "'); expected recording.bag.world_frame to be one that tf knows");
+    if (unknown + in_gaps == contents_.frames.size()) {
+      throw Error(bag_->file(),
+                  "tf says of no frame where the camera (frame '" + camera_frame_ + "') is in the world (frame '" + world +
+                      "'); expected " +
+                      (in_gaps > 0 ? "messages at most recording.max_pose_gap_s apart, " + std::to_string(config_.max_pose_gap_s) + " s"
+                                   : "recording.bag.world_frame to be one that tf knows"));
     }
-    if (unknown > 0) contents_.remarks.push_back(std::to_string(unknown) + " frames have no pose in tf");
+    remark_without_pose(contents_, unknown, in_gaps, "tf", config_.max_pose_gap_s);
   }
 
   // Depth of another view than the picture's would be mapped beside the objects.
@@ -589,17 +577,6 @@ class BagReader {
 
   bool has_calibration_beside() const { return fs::exists(bag_->file().parent_path() / "recording.yaml"); }
 
-  // By the median time between two.
-  template <class T>
-  static double rate_of(const std::vector<T>& values) {
-    std::vector<Stamp> steps;
-    for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i].stamp - values[i - 1].stamp);
-    if (steps.empty()) return 1.0;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return 1.0 / to_seconds(std::max<Stamp>(*middle, 1));
-  }
-
   const RecordingConfig& config_;
   std::shared_ptr<OpenBag> bag_;
   rosbag::View view_;
@@ -608,7 +585,7 @@ class BagReader {
   std::string camera_frame_, depth_frame_, native_frame_, laser_frame_;
   std::optional<sensor_msgs::CameraInfo> first_info_, depth_info_, native_info_;
   std::vector<Picture> colours_, depths_, natives_;
-  tf2::BufferCore tf_{ros::Duration(1e6)};  // nothing is forgotten
+  BagTransforms tf_;
   std::size_t bad_readings_ = 0, bad_scans_ = 0, bad_transforms_ = 0;
   RecordingContents contents_;
 };

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "sensors/recordings/stamped_files.h"
 #include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
@@ -59,9 +60,11 @@ class Reader {
 
   RecordingContents finish() {
     if (contents_.scans.empty()) throw Error(file_, "holds no FLASER line; expected a CARMEN log with laser scans");
+    expect_times(contents_.scans, file_, "FLASER lines");
+    expect_times(contents_.readings, file_, "ODOM lines");
     contents_.has_laser = true;
     contents_.X_BL = make_upright_pose(offset_, 0.0, 0.0, 0.0);
-    contents_.laser_rate_hz = rate_hz();
+    contents_.laser_rate_hz = median_rate_hz(contents_.scans);
     for (LaserScan& scan : contents_.scans) {
       scan.range_max = range_max_;
       for (float& range : scan.ranges) range = range < range_max_ ? range : 0.0f;
@@ -137,17 +140,6 @@ class Reader {
     } else if (words_[1] == "robot_frontlaser_offset") {
       offset_ = number(2);
     }
-  }
-
-  // By the median time between scans: logs have gaps.
-  double rate_hz() const {
-    std::vector<Stamp> steps;
-    const std::vector<LaserScan>& scans = contents_.scans;
-    for (std::size_t i = 1; i < scans.size(); ++i) steps.push_back(std::abs(scans[i].stamp - scans[i - 1].stamp));
-    if (steps.empty()) return 0.0;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    const Stamp median = steps[steps.size() / 2];
-    return median > 0 ? 1.0 / to_seconds(median) : 0.0;
   }
 
   fs::path file_;

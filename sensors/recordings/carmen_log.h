@@ -19,7 +19,7 @@ namespace waretwin {
 // line without a stamp (ipc_timestamp 0) after each scan, which holds its corrected pose, and let the odometry go on from there. That line
 // is no reading: odometry is put together again from the motion between each stamped line and the line before it, in which the corrected
 // pose cancels out.
-// Throws Error with file and line for a malformed line, for a log without scans, and for a damaged .gz.
+// Throws Error with file and line for a malformed line, for a log without scans or with one stamp for all, and for a damaged .gz.
 RecordingContents read_carmen_log(const std::filesystem::path& file);
 
 }  // namespace waretwin

@@ -85,6 +85,7 @@ RecordingContents read_frame_folder(const fs::path& folder, const RecordingConfi
     throw Error(folder, contents.lost_frames > 0 ? "holds no frame with a pose; all " + std::to_string(contents.lost_frames) + " are lost"
                                                  : "holds no frames; expected frame-NNNNNN.color.png or .jpg");
   }
+  expect_times_of(contents.frames, stamps.file());
   contents.up_W = guess_up(contents.frames);
   return contents;
 }

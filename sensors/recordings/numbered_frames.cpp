@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "sensors/recordings/stamped_files.h"
 #include "sensors/recordings/text_formats.h"
 
 namespace waretwin {
@@ -57,6 +58,10 @@ Stamp FrameStamps::of(std::int64_t number) const {
   if (found == stamps_.end())
     throw Error(file_, "has no stamp for frame " + std::to_string(number) + "; expected one for each or no such file");
   return found->second;
+}
+
+void expect_times_of(const std::vector<RecordedFrame>& frames, const fs::path& file) {
+  expect_times(frames, file, "frames", "or no such file (they are then recording.frame_rate_hz a second)");
 }
 
 std::optional<Pose> matrix_pose(const std::vector<double>& m, const fs::path& file, int line) {

@@ -27,12 +27,16 @@ class FrameStamps {
   // Throws Error for a number that stamps.txt leaves out.
   Stamp of(std::int64_t number) const;
   bool exact() const { return !stamps_.empty(); }
+  const std::filesystem::path& file() const { return file_; }
 
  private:
   std::filesystem::path file_;
   double rate_hz_;
   std::map<std::int64_t, Stamp> stamps_;
 };
+
+// Throws Error naming the file that the stamps are from where all of several frames have one stamp.
+void expect_times_of(const std::vector<RecordedFrame>& frames, const std::filesystem::path& file);
 
 // A 4 x 4 matrix, row by row, as a pose. Nothing where a number is not finite (a lost camera); throws Error naming file and line (0: the
 // file as a whole) for what is no rigid motion.

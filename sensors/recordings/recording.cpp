@@ -2,6 +2,7 @@
 
 #include "core/config.h"
 #include "core/error.h"
+#include "core/own_name.h"
 #include "sensors/recordings/carmen_log.h"
 #include "sensors/recordings/contents.h"
 #include "sensors/recordings/recorded_image.h"
@@ -60,12 +61,6 @@ RecordingContents read_folder(const fs::path& folder, const RecordingConfig& con
   return contents;
 }
 
-// The last part of a path's name, also of "." and "drive/".
-std::string name_of(const fs::path& path) {
-  const fs::path whole = fs::absolute(path).lexically_normal();
-  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
-}
-
 }  // namespace
 
 StoredImage stored_colour(const fs::path& file) {
@@ -86,7 +81,7 @@ bool is_recording_file(const fs::path& file) { return is_carmen_log(file) || is_
 
 std::unique_ptr<Recording> open_recording(const fs::path& path, const RecordingConfig& config) {
   if (!fs::exists(path)) throw Error(path, "no such folder, log or bag");
-  if (is_carmen_log(path)) return make_stream(read_carmen_log(path), std::nullopt, config, name_of(path));
+  if (is_carmen_log(path)) return make_stream(read_carmen_log(path), std::nullopt, config, own_name(path));
   const bool bag = is_ros_bag(path);
   if (!bag && !fs::is_directory(path)) {
     throw Error(path, "is not a folder; expected a recording's folder, a CARMEN log (.log, .log.gz) or a ROS 1 bag (.bag)");
@@ -98,7 +93,7 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const RecordingC
     calibration.emplace();
     read_config_into(calibration_file, *calibration);
   }
-  return make_stream(std::move(contents), calibration, config, name_of(path));
+  return make_stream(std::move(contents), calibration, config, own_name(path));
 }
 
 }  // namespace waretwin

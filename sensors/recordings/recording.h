@@ -6,8 +6,9 @@
 //           that is not finite marks a lost camera: the frame is left out and counted.
 //   tum     (TUM RGB-D)          rgb.txt and depth.txt (lines "seconds file"), groundtruth.txt ("seconds x y z qx qy qz qw", camera to
 //           world; may be missing). A picture and a depth image belong together when each is the other's nearest, within
-//           association_s. Depth in units of 1 / 5000 m. Intrinsics from recording.yaml, else from calibration.txt ("fx fy cx cy",
-//           further numbers are ignored), else those of the Freiburg 1 camera.
+//           association_s. Poses are interpolated between two at most max_pose_gap_s apart; in longer gaps and beyond the ends a frame
+//           takes the nearest one within association_s, else it has none. Depth in units of 1 / 5000 m. Intrinsics from recording.yaml,
+//           else from calibration.txt ("fx fy cx cy", further numbers are ignored), else those of the Freiburg 1 camera.
 //   scenenn (SceneNN, Hua et al. 2016)  image/imageNNNNN.png and depth/depthNNNNN.png, numbered from 1 as the dataset's playback tool
 //           writes them; timestamp.txt ("number colour_us depth_us", may be missing: then number / frame_rate_hz); trajectory.log (a
 //           line "i i i+1" for frame i + 1 and its 4 x 4 matrix, camera to world; may be missing). Depth in millimetres. Intrinsics from
@@ -58,6 +59,9 @@ struct RecordingConfig {
   std::vector<double> depth_invalid;            // units that mean "nothing measured", beside 0 and 65535
   double frame_rate_hz = 30.0;
   double association_s = 0.02;
+  // Recorded poses are interpolated between two that are at most so far apart (tum, bags). Half a second: a vehicle that brakes with 1
+  // m/s^2 is then at most 3 cm beside the straight line.
+  double max_pose_gap_s = 0.5;
   ClockOffsets clock;
   RosBagConfig bag;
   void visit(Fields& f);

@@ -49,6 +49,8 @@ void RecordingConfig::visit(Fields& f) {
   f("depth_invalid", depth_invalid, "units of a 16-bit depth image that mean nothing was measured, beside 0 and 65535");
   f("frame_rate_hz", frame_rate_hz, "frames a second, where frames are numbered", {.min = 0.001, .max = 10000});
   f("association_s", association_s, "most time between a picture and its depth image", {.min = 0, .max = 10});
+  f("max_pose_gap_s", max_pose_gap_s, "most time between two recorded poses that are interpolated; frames in longer gaps have no pose",
+    {.min = 0, .max = 1e6});
   f.group("clock", clock, "what the sensors' clocks are behind by");
   f.group("bag", bag, "topics and frames of a ROS bag");
 }

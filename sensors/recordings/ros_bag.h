@@ -22,11 +22,13 @@ std::optional<std::filesystem::path> bag_in(const std::filesystem::path& folder)
 //   camera_info the first one of the colour camera: K, and D where the pictures are not rectified
 //   laser       sensor_msgs/LaserScan; what is not in [range_min, range_max] becomes 0
 //   odometry    nav_msgs/Odometry: x, y and heading (rounded to nanoradians, so that our own come back exactly)
-//   tf          where camera and laser are on the vehicle, and with world_frame the recorded poses, between two messages interpolated
+//   tf          where camera and laser are on the vehicle, and with world_frame the recorded poses, interpolated between two messages at
+//               most max_pose_gap_s apart
 // Stamps are those of the messages' headers; messages may come in any order, those of a stamp that was there before are left out, and
 // pictures without a partner within association_s are, too; remarks say how many. Pictures stay in the file until a frame is loaded.
-// Throws Error for a damaged or unindexed bag, for a topic that is missing, ambiguous or of another type (naming the key and what is
-// there), for encodings that are not read, and where tf does not connect the vehicle with a sensor that has no mount otherwise.
+// Throws Error for a damaged or unindexed bag, for a topic whose messages all have one stamp, for a topic that is missing, ambiguous or of
+// another type (naming the key and what is there), for encodings that are not read, and where tf does not connect the vehicle with a sensor
+// that has no mount otherwise.
 RecordingContents read_ros_bag(const std::filesystem::path& file, const RecordingConfig& config);
 
 // recording.bag in the folder; recording_writer.h lists its topics. Equal streams give equal bytes.

@@ -27,8 +27,8 @@ void RosBagConfig::visit(Fields& f) {
   f("depth_topic", depth_topic, "depth registered to the colour picture; empty = the only one, or the only one whose name says so");
   f("native_depth_topic", native_depth_topic,
     "the depth camera's own images, before they were registered; none, or empty = the only other depth topic of the same device");
-  f("laser_topic", laser_topic, "sensor_msgs/LaserScan; empty = the only one");
-  f("odometry_topic", odometry_topic, "nav_msgs/Odometry; empty = the only one");
+  f("laser_topic", laser_topic, "sensor_msgs/LaserScan; none, or empty = the only one");
+  f("odometry_topic", odometry_topic, "nav_msgs/Odometry; none, or empty = the only one");
   f("base_frame", base_frame, "the vehicle's frame in tf");
   f("world_frame", world_frame, "frame of the poses that tf recorded, e.g. map; empty = none");
   f("camera_frame", camera_frame, "the camera's optical frame in tf; empty = the messages' own");

@@ -11,7 +11,7 @@ struct RosBagConfig {
   // agiprobot: the topics and frames of the authors' robot, whose camera hangs upside down; azure_kinect: those of the Azure Kinect ROS
   // driver; auto: whatever topic is the only one of its type (for depth: of those registered to the colour picture).
   std::string preset = "auto";
-  // Empty: found by type.
+  // Empty: found by type. "none" for laser_topic and odometry_topic: not read.
   std::string colour_topic, colour_info_topic, depth_topic, laser_topic, odometry_topic;
   // The depth camera's own images; "none": not read, empty: the only other depth topic of the same device.
   std::string native_depth_topic;

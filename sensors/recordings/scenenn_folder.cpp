@@ -153,6 +153,7 @@ RecordingContents read_scenenn_folder(const fs::path& folder, const RecordingCon
     throw Error(folder, "holds no frame that has a picture, a depth image" + std::string(has_poses ? " and a pose" : "") +
                             "; expected image/imageNNNNN.png with depth/depthNNNNN.png");
   }
+  expect_times_of(contents.frames, times.empty() ? stamps.file() : times_file);
   if (without_depth > 0) contents.remarks.push_back(std::to_string(without_depth) + " pictures without a depth image are left out");
   if (beyond_log > 0) contents.remarks.push_back(std::to_string(beyond_log) + " frames that trajectory.log does not name are left out");
   contents.up_W = guess_up(contents.frames);

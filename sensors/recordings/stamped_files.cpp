@@ -9,6 +9,11 @@ namespace waretwin {
 
 namespace fs = std::filesystem;
 
+void refuse_one_stamp(const fs::path& file, std::size_t count, const std::string& what, Stamp stamp, const std::string& expected) {
+  throw Error(file, "all " + std::to_string(count) + " " + what + " have the stamp " + stamp_text(stamp) +
+                        "; expected the time at which each was taken" + (expected.empty() ? "" : ", " + expected));
+}
+
 std::vector<StampedFile> read_file_list(const fs::path& list) {
   std::vector<StampedFile> files;
   for (const TextLine& line : read_text_lines(list)) {
@@ -24,6 +29,7 @@ std::vector<StampedFile> read_file_list(const fs::path& list) {
     if (!fs::exists(file)) throw Error(list, line.line, "'" + line.words[1] + "' does not exist");
     files.push_back({parse_text_stamp(list, line.line, line.words[0]), file});
   }
+  expect_times(files, list, "files");
   sort_by_stamp(files);
   return files;
 }
@@ -36,6 +42,15 @@ void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size
   };
   say(colours, "colour pictures", "depth image");
   say(depths, "depth images", "colour picture");
+}
+
+void remark_without_pose(RecordingContents& contents, std::size_t unknown, std::size_t in_gaps, const std::string& poses,
+                         double max_gap_s) {
+  if (unknown > 0) contents.remarks.push_back(std::to_string(unknown) + " frames have no pose in " + poses);
+  if (in_gaps > 0) {
+    contents.remarks.push_back(std::to_string(in_gaps) + " frames have no pose: they lie in gaps of " + poses + " of more than " +
+                               std::to_string(max_gap_s) + " s (recording.max_pose_gap_s)");
+  }
 }
 
 }  // namespace waretwin

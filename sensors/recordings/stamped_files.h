@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,12 +20,36 @@ struct StampedFile {
 };
 
 // Lines "seconds file", sorted by stamp; files relative to the list. Throws Error with file and line for a malformed line, and for a file
-// that is missing or outside the list's folder.
+// that is missing or outside the list's folder, and where all have one stamp.
 std::vector<StampedFile> read_file_list(const std::filesystem::path& list);
 
 template <class T>
 void sort_by_stamp(std::vector<T>& values) {
   std::stable_sort(values.begin(), values.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
+}
+
+// Throws Error that `count` readings of `what` in the file all have one stamp, and says what is `expected` beside times ("", or "or ..").
+[[noreturn]] void refuse_one_stamp(const std::filesystem::path& file, std::size_t count, const std::string& what, Stamp stamp,
+                                   const std::string& expected);
+
+// Of readings that all have one stamp (0, of a driver that sets none) nobody knows when they were taken: two or more are refused.
+template <class T>
+void expect_times(const std::vector<T>& values, const std::filesystem::path& file, const std::string& what,
+                  const std::string& expected = "") {
+  const auto same = [&](const T& value) { return value.stamp == values.front().stamp; };
+  if (values.size() < 2 || !std::all_of(values.begin(), values.end(), same)) return;
+  refuse_one_stamp(file, values.size(), what, values.front().stamp, expected);
+}
+
+// Readings a second, by the median time between two: recordings have gaps. 0 where that is not known.
+template <class T>
+double median_rate_hz(const std::vector<T>& values) {
+  std::vector<Stamp> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(std::abs(values[i].stamp - values[i - 1].stamp));
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle > 0 ? 1.0 / to_seconds(*middle) : 0.0;
 }
 
 // Index of the nearest stamp; `sorted` is not empty.
@@ -54,5 +80,8 @@ inline Stamp depth_delay(const RecordingConfig& config) { return from_seconds(co
 
 // Says how many pictures stayed without a partner.
 void remark_unpaired(RecordingContents& contents, std::size_t colours, std::size_t depths, double tolerance_s);
+
+// Says how many frames stayed without a pose: those of whose time the `poses` (tf, or a file) say nothing, and those in gaps of them.
+void remark_without_pose(RecordingContents& contents, std::size_t unknown, std::size_t in_gaps, const std::string& poses, double max_gap_s);
 
 }  // namespace waretwin

@@ -135,6 +135,7 @@ std::vector<LaserScan> read_laser_file(const std::filesystem::path& file, const 
     }
     scans.push_back(std::move(scan));
   }
+  expect_times(scans, file, "scans");
   sort_by_stamp(scans);
   return scans;
 }
@@ -152,6 +153,7 @@ std::vector<OdometryReading> read_odometry_file(const std::filesystem::path& fil
     reading.X_OB = make_upright_pose(number(1), number(2), 0.0, number(3));
     readings.push_back(std::move(reading));
   }
+  expect_times(readings, file, "readings");
   sort_by_stamp(readings);
   return readings;
 }

@@ -31,7 +31,7 @@ std::string stamp_text(Stamp stamp);  // seconds with nine decimals
 std::string laser_line(const LaserScan& scan);
 std::string odometry_line(const OdometryReading& reading);
 
-// All scans or readings of a file, sorted by stamp. Throws Error for a malformed line.
+// All scans or readings of a file, sorted by stamp. Throws Error for a malformed line, and where several have one stamp and no other.
 std::vector<LaserScan> read_laser_file(const std::filesystem::path& file, const std::string& sensor);
 std::vector<OdometryReading> read_odometry_file(const std::filesystem::path& file, const std::string& sensor);
 

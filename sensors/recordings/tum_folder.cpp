@@ -14,6 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kPoses = "groundtruth.txt";
+
 struct StampedPose {
   Stamp stamp = 0;
   Pose X_WC = Pose::Identity();
@@ -38,22 +40,33 @@ std::vector<StampedPose> read_trajectory(const fs::path& file) {
     pose.X_WC.linear() = rotation.normalized().toRotationMatrix();
     poses.push_back(pose);
   }
+  expect_times(poses, file, "poses");
   sort_by_stamp(poses);
   return poses;
 }
 
-// Between two poses that are both near the stamp, the way between them; near the end of a trajectory the last pose.
-std::optional<Pose> pose_at(const std::vector<StampedPose>& poses, Stamp stamp, Stamp tolerance) {
-  if (poses.empty()) return std::nullopt;
-  const StampedPose& near = poses[nearest_stamp(poses, stamp)];
-  if (std::abs(near.stamp - stamp) > tolerance) return std::nullopt;
-  const auto after = std::lower_bound(poses.begin(), poses.end(), stamp, [](const StampedPose& p, Stamp s) { return p.stamp < s; });
-  if (after == poses.end() || after == poses.begin() || after->stamp == stamp) return near.X_WC;
-  const StampedPose& before = *(after - 1);
-  if (after->stamp - stamp > tolerance || stamp - before.stamp > tolerance) return near.X_WC;
-  return interpolate(before.X_WC, after->X_WC,
-                     static_cast<double>(stamp - before.stamp) / static_cast<double>(after->stamp - before.stamp));
-}
+// The camera's poses, sorted by stamp, and of how many frames they do not tell.
+struct RecordedPoses {
+  std::vector<StampedPose> poses;
+  Stamp max_gap = 0, tolerance = 0;
+  std::size_t unknown = 0, in_gaps = 0;
+
+  std::optional<Pose> at(Stamp stamp) {
+    if (poses.empty()) return std::nullopt;
+    const auto after = std::lower_bound(poses.begin(), poses.end(), stamp, [](const StampedPose& p, Stamp s) { return p.stamp < s; });
+    if (after != poses.end() && after->stamp == stamp) return after->X_WC;
+    const bool inside = after != poses.begin() && after != poses.end();
+    if (inside && after->stamp - (after - 1)->stamp <= max_gap) {
+      const StampedPose& before = *(after - 1);
+      return interpolate(before.X_WC, after->X_WC,
+                         static_cast<double>(stamp - before.stamp) / static_cast<double>(after->stamp - before.stamp));
+    }
+    const StampedPose& near = poses[nearest_stamp(poses, stamp)];
+    if (std::abs(near.stamp - stamp) <= tolerance) return near.X_WC;
+    ++(inside ? in_gaps : unknown);
+    return std::nullopt;
+  }
+};
 
 std::vector<double> read_calibration(const fs::path& file) {
   std::vector<double> numbers;
@@ -80,12 +93,14 @@ RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig&
   const std::vector<StampedFile> colours = read_file_list(folder / "rgb.txt");
   std::vector<StampedFile> depths = read_file_list(folder / "depth.txt");
   for (StampedFile& depth : depths) depth.stamp += depth_delay(config);
-  std::vector<StampedPose> poses;
-  if (fs::exists(folder / "groundtruth.txt")) poses = read_trajectory(folder / "groundtruth.txt");
   const Stamp tolerance = from_seconds(config.association_s);
+  RecordedPoses poses;
+  poses.max_gap = from_seconds(config.max_pose_gap_s);
+  poses.tolerance = tolerance;
+  if (fs::exists(folder / kPoses)) poses.poses = read_trajectory(folder / kPoses);
   for (const auto& [colour, depth] : pairs_by_stamp(colours, depths, tolerance)) {
     RecordedFrame frame{colours[colour].stamp, depths[depth].stamp, stored_colour(colours[colour].file), stored_depth(depths[depth].file)};
-    frame.X_WC = pose_at(poses, frame.stamp + from_seconds(config.clock.colour_s), tolerance);
+    frame.X_WC = poses.at(frame.stamp + from_seconds(config.clock.colour_s));
     contents.frames.push_back(std::move(frame));
   }
   if (contents.frames.empty()) {
@@ -93,6 +108,7 @@ RecordingContents read_tum_folder(const fs::path& folder, const RecordingConfig&
                             std::to_string(colours.size()) + " in rgb.txt, " + std::to_string(depths.size()) + " in depth.txt)");
   }
   remark_unpaired(contents, colours.size(), depths.size(), config.association_s);
+  remark_without_pose(contents, poses.unknown, poses.in_gaps, kPoses, config.max_pose_gap_s);
   return contents;
 }
 

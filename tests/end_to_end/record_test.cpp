@@ -379,8 +379,22 @@ TEST(LaserLog, IsInspectedAndMappedToATrajectory) {
     EXPECT_FALSE(fs::exists(out / "map.glb"));
     EXPECT_EQ(fs::exists(out / "trajectory_covariance.csv"), profile == "best");
   }
+  const auto seen = test::waretwin("inspect " + in_quotes(out));
+  EXPECT_EQ(seen.exit_code, 0) << seen.err;
+  EXPECT_NE(seen.out.find("map of a laser log: 2 poses of the laser in 0.2 s"), std::string::npos) << seen.out;
   write_file(log, "FLASER 2 1\n");
   EXPECT_ONE_LINE(test::waretwin("map " + in_quotes(log) + " --out " + in_quotes(out)), "drive.log:1:");
+}
+
+TEST(InspectRecording, SaysThatDepthHasAnotherSizeThanThePictures) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "1.ppm", "P6 8 6 255\n" + std::string(3 * 8 * 6, '\1'));
+  write_file(folder.path() / "1.pgm", "P5 4 3 65535\n" + std::string(2 * 4 * 3, '\1'));
+  write_file(folder.path() / "rgb.txt", "1 1.ppm\n");
+  write_file(folder.path() / "depth.txt", "1 1.pgm\n");
+  const auto seen = test::waretwin("inspect " + in_quotes(folder.path()));
+  EXPECT_EQ(seen.exit_code, 2) << seen.out;
+  EXPECT_NE(seen.err.find("1.pgm: has 4 x 3 pixels; expected 8 x 6"), std::string::npos) << seen.err;
 }
 
 TEST(InspectNoise, SaysWhatIsWrong) {

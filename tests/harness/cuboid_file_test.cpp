@@ -51,12 +51,19 @@ TEST_F(CuboidFile, ReadsBackWhatItWrites) {
 }
 
 TEST_F(CuboidFile, NamesWhatIsWrong) {
-  EXPECT_NE(message("{").find("is not JSON"), std::string::npos);
+  const std::string file = (folder_.path() / "cuboids.json").string();
+  const std::string expected = "; expected an object with a list 'objects'";
+  EXPECT_EQ(message("{"), file + ":1: is not JSON: it ends too early" + expected);
+  EXPECT_EQ(message(""), file + ":1: is not JSON: it ends too early" + expected);
+  EXPECT_EQ(message("{\"objects\": [\n  {\"id\": 1,}\n]}"), file + ":2: is not JSON: it goes wrong at '}'" + expected);
+  EXPECT_EQ(message("{'objects': []}"), file + ":1: is not JSON: it goes wrong at ''objects': []}'" + expected);
+  EXPECT_EQ(message("{\"objects\": [1e999]}"), file + ": is not JSON that can be read: it holds a number that is out of range" + expected);
   EXPECT_NE(message("{}").find("key 'objects' is missing"), std::string::npos);
   EXPECT_NE(message("[]").find("expected a JSON object"), std::string::npos);
   EXPECT_NE(message(R"({"objects":[{"id":1}]})").find("objects[0]: key 'class' is missing"), std::string::npos);
   const std::string head = R"({"objects":[{"id":1,"class":"c","yaw":0,"centre":[0,0,0],)";
   EXPECT_NE(message(head + R"("size":[1,-1,1]}]})").find("negative"), std::string::npos);
+  EXPECT_NE(message(head + R"("size":[1,1e200,1]}]})").find("objects[0]: 'size' is beyond 1e9, expected metres"), std::string::npos);
   EXPECT_NE(message(head + R"("size":[1,1]}]})").find("not a list of 3 numbers"), std::string::npos);
   EXPECT_NE(message(head + R"("size":[1,1,1],"score":1.5}]})").find("expected 0 to 1"), std::string::npos);
   const std::string one = R"({"id":1,"class":"c","yaw":0,"centre":[0,0,0],"size":[1,1,1]})";

@@ -66,6 +66,7 @@ TEST_F(Annotation, LeavesTheRoomOutAndNamesWhatIsDamaged) {
   EXPECT_ERROR(read("<label id=\"one\" text=\"chair\" obbox=\"0 0 0 1 1 1 0 0 0 1\"/>"), "011.xml:3:", "id is 'one'");
   EXPECT_ERROR(read("<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 1 1 0 0 0\"/>"), "expected ten numbers");
   EXPECT_ERROR(read("<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 1 1 0 0 0 x\"/>"), "expected ten numbers");
+  EXPECT_ERROR(read("<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 1e300 1 0 0 0 1\"/>"), "expected ten numbers up to 1e9");
   EXPECT_ERROR(read("<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 -1 1 0 0 0 1\"/>"), "negative length");
   EXPECT_ERROR(read("<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 1 1 0 0 0 2\"/>"), "no quaternion");
   const std::string one = "<label id=\"1\" text=\"chair\" obbox=\"0 0 0 1 1 1 0 0 0 1\"/>";

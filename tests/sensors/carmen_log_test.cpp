@@ -122,6 +122,7 @@ TEST_F(CarmenLogTest, NothingOfTheCorrectedPosesGetsThrough) {
 TEST_F(CarmenLogTest, SaysWhatIsWrongAndWhere) {
   const std::string good = "FLASER 2 1 2 0 0 0 0 0 0 1.5 host 1.5\n";
   EXPECT_ERROR(open_recording(write("a.log", "")), "a.log", "no FLASER line");
+  EXPECT_ERROR(open_recording(write("a.log", good + good)), "a.log: all 2 FLASER lines have the stamp");
   EXPECT_ERROR(open_recording(write("a.log", good + "FLASER 3 1 2 0 0 0 0 0 0 1 host 1\n")), "a.log:2:", "has 13 words; expected 14");
   EXPECT_ERROR(open_recording(write("a.log", good + "FLASER\n")), "a.log:2:", "count from 1 to 100000");
   EXPECT_ERROR(open_recording(write("a.log", good + "FLASER -1 1\n")), "a.log:2:", "count from 1 to 100000");

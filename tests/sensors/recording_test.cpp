@@ -216,6 +216,28 @@ TEST_F(TumFolder, AssociatesByMutualNearestStamp) {
   EXPECT_EQ(frames[1].recorded_X_WC->translation().x(), 4.0);
 }
 
+TEST_F(TumFolder, PosesAreInterpolatedUnlessTheGapIsLong) {
+  // The pictures are at .175304 and .211214.
+  write("groundtruth.txt", "1305031102.1000 1 2 3 0 0 0 1\n1305031102.2000 2 2 3 0 0 0 1\n1305031102.9000 4 2 3 0 0 0 1\n");
+  auto recording = open_recording(path());
+  auto frames = all_frames(*recording);
+  EXPECT_NEAR(frames.at(0).recorded_X_WC.value().translation().x(), 1.75304, 1e-6);
+  EXPECT_EQ(frames.at(1).recorded_X_WC.value().translation().x(), 2.0) << "in the gap, but 11 ms from its edge";
+  RecordingConfig config;
+  config.association_s = 0.0165;
+  config.max_pose_gap_s = 0.05;
+  write("groundtruth.txt", "1305031102.1000 1 2 3 0 0 0 1\n1305031102.2000 2 2 3 0 0 0 1\n");
+  recording = open_recording(path(), config);
+  frames = all_frames(*recording);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_FALSE(frames[0].recorded_X_WC);
+  EXPECT_TRUE(frames[1].recorded_X_WC) << "beyond the end, but near it";
+  EXPECT_EQ(recording->remarks().back(),
+            "1 frames have no pose: they lie in gaps of groundtruth.txt of more than 0.050000 s (recording.max_pose_gap_s)");
+  write("groundtruth.txt", "1305031100 1 2 3 0 0 0 1\n");
+  EXPECT_EQ(open_recording(path())->remarks().back(), "2 frames have no pose in groundtruth.txt");
+}
+
 TEST_F(TumFolder, CalibrationFilesAndScaleCount) {
   write("calibration.txt", "400 401 4 3 0.1 0.2\n");
   RecordingConfig config;
@@ -225,6 +247,11 @@ TEST_F(TumFolder, CalibrationFilesAndScaleCount) {
   EXPECT_EQ(all_frames(*recording)[0].depth.at<float>(2, 2), 5000 * 0.001f);
   write("calibration.txt", "400 401 4\n");
   EXPECT_ERROR(open_recording(path()), "calibration.txt", "expected 'fx fy cx cy'");
+}
+
+TEST_F(TumFolder, FilesOfOneStampAreRefused) {
+  write("rgb.txt", "0 rgb/0.png\n0 rgb/1.png\n");
+  EXPECT_ERROR(open_recording(path()), "rgb.txt: all 2 files have the stamp 0.000000000; expected the time at which each was taken");
 }
 
 TEST_F(TumFolder, DamageIsNamed) {
@@ -334,6 +361,13 @@ TEST_F(SceneNnFolder, ReadsItsIntrinsicsAndExactStamps) {
   write("stamps.txt", "1 1\n");
   write("intrinsic/asus.ini", "depth_width 8\ndepth_height 6\nfx 50\nfy 51\n");
   EXPECT_ERROR(open_recording(path()), "stamps.txt", "no stamp for frame 2");
+}
+
+TEST_F(SceneNnFolder, FramesOfOneStampAreRefused) {
+  write("timestamp.txt", "1 0 0\n2 0 0\n");
+  EXPECT_ERROR(open_recording(path()), "timestamp.txt: all 2 frames have the stamp 0.000000000; expected the time", "or no such file");
+  write("stamps.txt", "1 7\n2 7\n");
+  EXPECT_ERROR(open_recording(path()), "stamps.txt: all 2 frames have the stamp 7.000000000");
 }
 
 TEST_F(SceneNnFolder, SaysWhatIsLeftOutAndWhatIsDamaged) {

@@ -194,6 +194,35 @@ TEST_F(RosBag, SortsWhatCameOutOfOrderAndLeavesOutWhatHasNoPartner) {
   }
 }
 
+// Some drivers set no stamps.
+TEST_F(RosBag, ReadingsOfOneStampAreRefused) {
+  mounts();
+  for (const double t : {1.0, 2.0, 3.0}) {
+    frame(t);
+    auto reading = odometry(t, t, 0);
+    reading.header.stamp = ros::Time(0, 0);
+    write("/odom", t, reading);
+    write("/scan", t, scan(1.5));
+  }
+  bag_.close();
+  RecordingConfig config;
+  EXPECT_ERROR(open_recording(file(), config), "drive.bag: all 3 scans (/scan) have the stamp 1600000001.5", "expected the time",
+               "recording.bag.laser_topic=none");
+  config.bag.laser_topic = "none";
+  EXPECT_ERROR(open_recording(file(), config), "all 3 odometry readings (/odom) have the stamp 0.000000000", "odometry_topic=none");
+  config.bag.odometry_topic = "none";
+  const auto recording = open_recording(file(), config);
+  EXPECT_EQ(recording->info().frame_count, 3);
+  EXPECT_FALSE(recording->info().has_odometry);
+  EXPECT_TRUE(recording->info().lasers.empty());
+}
+
+TEST_F(RosBag, PicturesOfOneStampAreRefused) {
+  mounts();
+  for (int i = 0; i < 4; ++i) frame(0.0, 1.0 + i);
+  EXPECT_ERROR(open(), "all 4 pictures (/cam/color/image_raw) have the stamp 1600000000.000000000; expected the time");
+}
+
 TEST_F(RosBag, ClocksAreShiftedBeforePicturesArePaired) {
   mounts();
   write("/cam/color/camera_info", 1, camera_info(1));
@@ -232,6 +261,7 @@ TEST_F(RosBag, PosesComeFromTfAtTheInstantOfThePicture) {
   frame(9.0);  // tf had ended
   RecordingConfig config;
   config.bag.world_frame = "map";
+  config.max_pose_gap_s = 1.001;
   const auto recording = open(config);
   EXPECT_TRUE(recording->info().has_recorded_poses);
   EXPECT_EQ(recording->lost_frames(), 0) << "the frame stays, without a pose";
@@ -252,6 +282,44 @@ TEST_F(RosBag, PosesComeFromTfAtTheInstantOfThePicture) {
   EXPECT_TRUE(std::get<RgbdFrame>(*event).recorded_X_WC->isApprox(make_upright_pose(1.0 + 3.0, 0, 0, 0.3) * X_BC, 1e-9));
   config.bag.world_frame = "moon";
   EXPECT_ERROR(open_recording(file(), config), "'moon'", "recording.bag.world_frame");
+}
+
+// Of the transforms between world and camera the one with the longest gap decides; those of other frames do not count.
+TEST_F(RosBag, PosesInLongGapsOfTfAreNone) {
+  mounts();
+  const auto send = [&](double t, const std::string& parent, const std::string& child, double x) {
+    tf2_msgs::TFMessage tf;
+    tf.transforms = {transform(t, parent, child, x, 0, 0, 0)};
+    write("/tf", t, tf);
+  };
+  for (int i = 0; i <= 40; ++i) send(0.1 * i, "odom", "base_link", 0.1 * i);
+  for (const double t : {0.0, 0.4, 0.8, 2.0, 2.4, 4.0}) send(t, "map", "odom", 1.0);
+  for (const double t : {0.0, 4.0}) {
+    send(t, "base_link", "lift", 0.0);  // beside the way to the camera
+    send(t, "earth", "map", 1000.0);    // above both
+  }
+  for (const double t : {0.65, 1.25, 1.95, 2.0, 2.25, 3.05, 5.0}) frame(t);
+  bag_.close();
+  RecordingConfig config;
+  config.bag.world_frame = "map";
+  const auto poses = [&] {
+    std::string text;
+    const auto recording = open_recording(file(), config);
+    while (const auto event = recording->next()) text += std::get<RgbdFrame>(*event).recorded_X_WC ? "1" : "0";
+    for (const std::string& remark : recording->remarks()) text += "\n" + remark;
+    return text;
+  };
+  EXPECT_EQ(poses(),
+            "1001100\n1 frames have no pose in tf\n3 frames have no pose: they lie in gaps of tf of more than 0.500000 s "
+            "(recording.max_pose_gap_s)");
+  config.max_pose_gap_s = 1.3;
+  EXPECT_EQ(poses().substr(0, 7), "1111100");
+  config.max_pose_gap_s = 10.0;
+  EXPECT_EQ(poses(), "1111110\n1 frames have no pose in tf");
+  config.max_pose_gap_s = 0.0;
+  EXPECT_EQ(poses().substr(0, 7), "0001000") << "the one at which both have a message";
+  config.clock.colour_s = config.clock.depth_s = 0.03;
+  EXPECT_ERROR(open_recording(file(), config), "tf says of no frame", "recording.max_pose_gap_s");
 }
 
 // To tf the time 0 is "the latest".
@@ -276,6 +344,7 @@ TEST_F(RosBag, TheFirstPictureMayBeAtTimeNought) {
   bag_.write("/cam/color/camera_info", ros::TIME_MIN, info);
   RecordingConfig config;
   config.bag.world_frame = "odom";
+  config.max_pose_gap_s = 1.0;
   testing::internal::CaptureStderr();
   const auto recording = open(config);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "libraries are quiet";
