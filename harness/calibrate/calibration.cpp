@@ -127,7 +127,7 @@ Pose robust_closed_form(Views& seen, const CalibrateConfig& config, const Pose& 
 Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC_given, const Pose& X_BL) {
   std::vector<std::size_t> used;
   std::vector<BoardAndLines> poses;
-  const std::vector<std::vector<ScanLine>> lines = board_lines(seen.still, config.board);
+  const std::vector<BoardLines> lines = board_lines(seen.still, config.board);
   for (std::size_t i = 0; i < seen.views.size(); ++i) {
     if (!seen.unused[i].empty()) continue;
     used.push_back(i);
@@ -153,7 +153,7 @@ Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC
       if (best.line[k] < 0) {
         drop(seen, used[k], kNoLine);
       } else {
-        seen.views[used[k]].points = poses[k].lines[static_cast<std::size_t>(best.line[k])].points;
+        seen.views[used[k]].points = poses[k].candidates.lines[static_cast<std::size_t>(best.line[k])].points;
       }
     }
     return robust_closed_form(seen, config, X_BC_given);

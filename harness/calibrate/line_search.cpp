@@ -53,7 +53,8 @@ std::optional<LineSearch> settled(const std::vector<BoardAndLines>& poses, const
   for (int round = 0; round < kRounds; ++round) {
     std::vector<PlaneAndPoints> planes;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (found.line[i] >= 0) planes.push_back(plane_with(poses[i].board, poses[i].lines[static_cast<std::size_t>(found.line[i])]));
+      if (found.line[i] >= 0)
+        planes.push_back(plane_with(poses[i].board, poses[i].candidates.lines[static_cast<std::size_t>(found.line[i])]));
     }
     if (planes.size() < 5) return std::nullopt;
     LineSearch next;
@@ -71,17 +72,19 @@ std::optional<LineSearch> settled(const std::vector<BoardAndLines>& poses, const
 
 }  // namespace
 
-std::vector<std::vector<ScanLine>> board_lines(const std::vector<StillPose>& still, const CheckerBoard& board) {
+std::vector<BoardLines> board_lines(const std::vector<StillPose>& still, const CheckerBoard& board) {
+  // The spot adds to a board's length, and the ends that are left out take from it.
   const double longest = 2.0 * board.half_size().norm() + 0.1, shortest = 0.8 * board.half_size().minCoeff();
-  std::vector<std::vector<ScanLine>> all;
+  std::vector<BoardLines> all;
   for (const StillPose& pose : still) {
-    std::vector<ScanLine> lines = scan_lines(pose);
-    std::erase_if(lines, [&](const ScanLine& line) {
-      if (line.length_m < shortest || line.length_m > longest) return true;
-      const auto elsewhere = std::count_if(still.begin(), still.end(), [&](const StillPose& other) { return stands_there(line, other); });
-      return 4 * (elsewhere - 1) > static_cast<std::ptrdiff_t>(still.size());
+    BoardLines found{scan_lines(pose), 0};
+    std::erase_if(found.lines, [&](const ScanLine& line) { return line.length_m < shortest || line.length_m > longest; });
+    const auto moved = std::stable_partition(found.lines.begin(), found.lines.end(), [&](const ScanLine& line) {
+      const auto poses = std::count_if(still.begin(), still.end(), [&](const StillPose& other) { return stands_there(line, other); });
+      return 4 * (poses - 1) <= static_cast<std::ptrdiff_t>(still.size());  // it stands in its own
     });
-    all.push_back(std::move(lines));
+    found.moved = static_cast<std::size_t>(moved - found.lines.begin());
+    all.push_back(std::move(found));
   }
   return all;
 }
@@ -92,8 +95,8 @@ LineSearch agreeing_lines(const std::vector<BoardAndLines>& poses, const Checker
   LineSearch found{X_CL, std::vector<int>(poses.size(), -1), 0};
   for (std::size_t i = 0; i < poses.size(); ++i) {
     double least = kOff_m;
-    for (std::size_t k = 0; k < poses[i].lines.size(); ++k) {
-      const std::optional<double> off = off_board(plane_with(poses[i].board, poses[i].lines[k]), poses[i].board, board, X_CL);
+    for (std::size_t k = 0; k < poses[i].candidates.lines.size(); ++k) {
+      const std::optional<double> off = off_board(plane_with(poses[i].board, poses[i].candidates.lines[k]), poses[i].board, board, X_CL);
       if (!off || *off >= least) continue;
       least = *off;
       found.line[i] = static_cast<int>(k);
@@ -108,7 +111,7 @@ std::optional<LineSearch> search_lines(const std::vector<BoardAndLines>& poses, 
   constexpr std::size_t kSample = 6;
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!poses[i].lines.empty()) order.push_back(i);
+    if (!poses[i].candidates.lines.empty()) order.push_back(i);
   }
   if (order.size() < kSample) return std::nullopt;
   const RandomStream random(0, "calibrate", "line_search");
@@ -121,7 +124,8 @@ std::optional<LineSearch> search_lines(const std::vector<BoardAndLines>& poses, 
     };
     for (std::size_t i = 0; i < kSample; ++i) {
       std::swap(order[i], order[i + below(order.size() - i)]);
-      sample.line[order[i]] = static_cast<int>(below(poses[order[i]].lines.size()));
+      const BoardLines& candidates = poses[order[i]].candidates;
+      sample.line[order[i]] = static_cast<int>(below(candidates.moved > 0 ? candidates.moved : candidates.lines.size()));
     }
     const std::optional<LineSearch> found = settled(poses, board, std::move(sample));
     if (found && found->agreed >= static_cast<int>(kSample) && (!best || found->agreed > best->agreed)) best = found;

@@ -12,14 +12,20 @@
 
 namespace waretwin {
 
-struct BoardAndLines {
-  BoardView board;              // its points are not looked at
-  std::vector<ScanLine> lines;  // that may be it
+// Lines of a scan that may be the board. The first `moved` of them are in few other scans, as that of a board is; the others stand in many
+// poses, as what belongs to the hall does while the vehicle stands.
+struct BoardLines {
+  std::vector<ScanLine> lines;
+  std::size_t moved = 0;
 };
 
-// Lines of each pose that may be a board: no longer than its diagonal, and not in the scans of many other poses, too, as what belongs to
-// the hall is while the vehicle stands.
-std::vector<std::vector<ScanLine>> board_lines(const std::vector<StillPose>& still, const CheckerBoard& board);
+// Of each pose those that are as long as a line on the board can be.
+std::vector<BoardLines> board_lines(const std::vector<StillPose>& still, const CheckerBoard& board);
+
+struct BoardAndLines {
+  BoardView board;  // its points are not looked at
+  BoardLines candidates;
+};
 
 struct LineSearch {
   Pose X_CL = Pose::Identity();
@@ -30,7 +36,8 @@ struct LineSearch {
 // Which line of each pose lies on its board, given the mounting.
 LineSearch agreeing_lines(const std::vector<BoardAndLines>& poses, const CheckerBoard& board, const Pose& X_CL);
 
-// The mounting on which most poses agree. Same input, same result. Nothing where fewer than six agree on any: five always do.
+// The mounting on which most poses agree, from samples of lines that moved (of all lines of a pose where none did). Same input, same
+// result. Nothing where fewer than six agree on any.
 std::optional<LineSearch> search_lines(const std::vector<BoardAndLines>& poses, const CheckerBoard& board);
 
 }  // namespace waretwin

@@ -211,6 +211,17 @@ TEST(Calibration, NeedsNoGuess) {
     EXPECT_LT((found.found.X_BC.translation() - bench.X_BC.translation()).norm(), 0.006);
     EXPECT_LT(to_degrees(rotation_between(found.found.X_BC, bench.X_BC)), 0.2);
   }
+  // A board that is turned about its line in the scan looks like the hall.
+  std::vector<Pose> turned;
+  for (const double yaw : {-30.0, 0.0, 30.0}) {
+    for (const double tilt : {0.0, 15.0, 30.0}) {
+      Pose X = Bench::X_BO(1.4, 0.1, yaw, tilt);
+      X.translation() += 0.12 * (X.linear().col(1) + Eigen::Vector3d::UnitZ());
+      turned.push_back(X);
+    }
+  }
+  EXPECT_EQ(calibrate(bench.look(turned), bench.info({0.03, -0.02, 0.02}, 1, -2, 1), {}).used_poses, 9);
+  EXPECT_EQ(calibrate(bench.look(turned), bench.info({-1, 1, -1}, 170, 40, 90), {}).used_poses, 9);
   // Lines that are never the board agree on nothing.
   for (StillPose& pose : still) {
     for (BeamMean& beam : pose.beams) {
