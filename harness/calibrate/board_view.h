@@ -25,7 +25,7 @@ struct BoardView {
 // Where the board stands, from its corners alone (PnP). Nothing where no pose explains them.
 std::optional<BoardView> view_board(const std::vector<Eigen::Vector2d>& corners, const Intrinsics& intrinsics, const CheckerBoard& board);
 
-// How wrong the poses may be that the estimate begins with.
+// How wrong the poses may be that are known beforehand, for them to tell which line is the board (else: line_search.h).
 struct GuessGate {
   double distance_m = 0.3;
   double angle_deg = 10.0;

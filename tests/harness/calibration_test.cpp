@@ -211,6 +211,8 @@ TEST(Calibration, NeedsNoGuess) {
     EXPECT_LT((found.found.X_BC.translation() - bench.X_BC.translation()).norm(), 0.006);
     EXPECT_LT(to_degrees(rotation_between(found.found.X_BC, bench.X_BC)), 0.2);
   }
+  EXPECT_ERROR(calibrate({still.begin(), still.begin() + 5}, bench.info({-1, 1, -1}, 170, 40, 90), {}), "0.30 m and 10.0 deg",
+               "eight poses");
   // A board that is turned about its line in the scan looks like the hall.
   std::vector<Pose> turned;
   for (const double yaw : {-30.0, 0.0, 30.0}) {
