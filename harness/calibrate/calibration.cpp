@@ -166,7 +166,8 @@ Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC
                 " deg (calibrate.guess), or eight poses");
   }
   if (refusal) throw Error(*refusal);
-  if (best.agreed < config.least_poses) {
+  // The closed form of few poses is so rough that lines which the guess told rightly may miss their boards.
+  if (used.size() >= kEnough && best.agreed < config.least_poses) {
     throw Error("the lines in the scans lie on the boards of " + std::to_string(best.agreed) + " of " + std::to_string(used.size()) +
                 " poses only; expected at least " + std::to_string(config.least_poses) + " on which one place of the camera agrees");
   }
