@@ -121,7 +121,7 @@ if(TARGET Ceres::ceres)
   target_link_libraries(waretwin_ceres INTERFACE Ceres::ceres)
   target_compile_definitions(waretwin_ceres INTERFACE WARETWIN_CERES)
 else()
-  message(STATUS "Ceres not found: waretwin calibrate is left out (libceres-dev)")
+  message(STATUS "Ceres not found: waretwin calibrate only says so (libceres-dev)")
 endif()
 
 # For training detectors, where it is installed (libtorch-dev). Its configuration speaks of static libraries that Debian does not ship.

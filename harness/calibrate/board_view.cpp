@@ -1,60 +1,16 @@
 #include "harness/calibrate/board_view.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-
-#include "core/statistics.h"
 
 namespace waretwin {
 
 namespace {
 
-constexpr int kLeastPoints = 8;
 // Of a spot at a range: half of 8 mm + 15 mrad (sensors/laser_config.h), which is about what safety scanners have, and room for corners'
 // errors.
 double beside(double range_m) { return 0.01 + 0.0075 * range_m; }
-
-bool steady(const BeamMean& beam, int scans) { return beam.readings > 0 && 2 * beam.readings >= scans; }
-
-LaserPoint point_of(const BeamMean& beam, double sigma_m) {
-  return {beam.angle, beam.range_m, sigma_m / std::sqrt(static_cast<double>(beam.readings))};
-}
-
-// A straight piece of a scan, in the plane of the laser.
-struct Piece {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero(), direction = Eigen::Vector2d::UnitX();
-  double length = 0.0, rms = 0.0;
-};
-
-Piece fit_line(const std::vector<Eigen::Vector2d>& points) {
-  Piece piece;
-  for (const Eigen::Vector2d& p : points) piece.middle += p / static_cast<double>(points.size());
-  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& p : points) scatter += (p - piece.middle) * (p - piece.middle).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scatter);
-  piece.direction = eigen.eigenvectors().col(1);
-  piece.rms = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) / static_cast<double>(points.size()));
-  double least = 0.0, most = 0.0;
-  for (const Eigen::Vector2d& p : points) {
-    least = std::min(least, piece.direction.dot(p - piece.middle));
-    most = std::max(most, piece.direction.dot(p - piece.middle));
-  }
-  piece.length = most - least;
-  return piece;
-}
-
-// The standard deviation of one reading: what most of these beams have.
-double typical_sigma(const std::vector<BeamMean>& beams) {
-  std::vector<double> sigmas;
-  for (const BeamMean& beam : beams) {
-    if (beam.readings > 2) sigmas.push_back(beam.sigma_m);
-  }
-  // Too few scans to tell, or readings that never change: a step of 10 mm hides about 3 mm.
-  constexpr double kStep = 0.003;
-  return sigmas.empty() ? 0.01 : std::max(kStep, median(std::move(sigmas)));
-}
 
 }  // namespace
 
@@ -111,35 +67,16 @@ std::vector<LaserPoint> points_by_guess(const StillPose& pose, const BoardView& 
 
   std::vector<LaserPoint> best;
   double best_cost = 3.0;
-  std::size_t begin = 0;
-  const std::vector<BeamMean>& beams = pose.beams;
-  const auto consider = [&](std::size_t from, std::size_t to) {
-    constexpr std::size_t kEnds = 2;
-    if (to - from < kLeastPoints + 2 * kEnds) return;
-    std::vector<Eigen::Vector2d> points;
-    for (std::size_t i = from + kEnds; i < to - kEnds; ++i)
-      points.emplace_back(beams[i].range_m * std::cos(beams[i].angle), beams[i].range_m * std::sin(beams[i].angle));
-    const Piece piece = fit_line(points);
-    const double off = (piece.middle - expected).norm() / std::max(far_m, 1e-6);
+  for (ScanLine& line : scan_lines(pose)) {
+    const double off = (line.middle_L - expected).norm() / std::max(far_m, 1e-6);
     // The board's own place in the laser's plane turns what is seen of a tilted one; hence twice the angle.
-    const double turned = std::acos(std::min(1.0, std::abs(piece.direction.dot(direction)))) / to_radians(2.0 * gate.angle_deg + 5.0);
-    const double longer = piece.length / length;
-    constexpr double kStraight_m = 0.02;
-    if (off > 1.0 || turned > 1.0 || longer < 0.4 || longer > 1.5 || piece.rms > kStraight_m) return;
+    const double turned = std::acos(std::min(1.0, std::abs(line.direction_L.dot(direction)))) / to_radians(2.0 * gate.angle_deg + 5.0);
+    const double longer = line.length_m / length;
+    if (off > 1.0 || turned > 1.0 || longer < 0.4 || longer > 1.5) continue;
     const double cost = off * off + turned * turned + std::pow(std::log(longer) / std::log(1.5), 2);
-    if (cost >= best_cost) return;
+    if (cost >= best_cost) continue;
     best_cost = cost;
-    best.clear();
-    const double sigma =
-        typical_sigma({beams.begin() + static_cast<std::ptrdiff_t>(from), beams.begin() + static_cast<std::ptrdiff_t>(to)});
-    for (std::size_t i = from + kEnds; i < to - kEnds; ++i) best.push_back(point_of(beams[i], sigma));
-  };
-  for (std::size_t i = 0; i <= beams.size(); ++i) {
-    const bool joined = i > begin && i < beams.size() && steady(beams[i], pose.scans) && steady(beams[i - 1], pose.scans) &&
-                        std::abs(beams[i].range_m - beams[i - 1].range_m) < 0.05 + 0.02 * beams[i].range_m;
-    if (joined) continue;
-    if (i > begin) consider(begin, i);
-    begin = i;
+    best = std::move(line.points);
   }
   return best;
 }
@@ -163,10 +100,7 @@ std::vector<LaserPoint> points_by_estimate(const StillPose& pose, const BoardVie
     met.push_back(beam);
   }
   if (met.size() < kLeastPoints) return {};
-  std::vector<LaserPoint> points;
-  const double sigma = typical_sigma(met);
-  for (const BeamMean& beam : met) points.push_back(point_of(beam, sigma));
-  return points;
+  return laser_points(met);
 }
 
 }  // namespace waretwin

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/statistics.h"
 #include "harness/calibrate/closed_form.h"
+#include "harness/calibrate/line_search.h"
 
 namespace waretwin {
 
@@ -23,6 +24,7 @@ std::string chosen(const std::map<std::string, T>& sensors, const std::string& n
 }
 
 constexpr const char* kNoBoard = "the corners fit no board";
+constexpr const char* kNoLine = "the scan has no line where the board should be";
 
 struct Views {
   std::vector<StillPose> still;
@@ -68,7 +70,7 @@ void pick_by_guess(Views& seen, const CalibrateConfig& config, const Pose& X_CL)
   for (std::size_t i = 0; i < seen.views.size(); ++i) {
     if (!seen.unused[i].empty()) continue;
     seen.views[i].points = points_by_guess(seen.still[i], seen.views[i], config.board, X_CL, config.guess);
-    if (seen.views[i].points.empty()) drop(seen, i, "the scan has no line where the board should be");
+    if (seen.views[i].points.empty()) drop(seen, i, kNoLine);
   }
 }
 
@@ -121,6 +123,58 @@ Pose robust_closed_form(Views& seen, const CalibrateConfig& config, const Pose& 
   }
 }
 
+// Where the guess is too far off to tell which lines are boards, the poses tell it together.
+Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC_given, const Pose& X_BL) {
+  std::vector<std::size_t> used;
+  std::vector<BoardAndLines> poses;
+  const std::vector<BoardLines> lines = board_lines(seen.still, config.board);
+  for (std::size_t i = 0; i < seen.views.size(); ++i) {
+    if (!seen.unused[i].empty()) continue;
+    used.push_back(i);
+    poses.push_back({seen.views[i], lines[i]});
+  }
+  Views guessed = seen;
+  int told = 0;  // poses whose line the guess told
+  LineSearch best;
+  std::optional<Error> refusal;
+  try {
+    pick_by_guess(guessed, config, X_BC_given.inverse() * X_BL);
+    best = agreeing_lines(poses, config.board, robust_closed_form(guessed, config, X_BC_given));
+    told = static_cast<int>(std::count(guessed.unused.begin(), guessed.unused.end(), ""));
+  } catch (const Error& error) {
+    refusal = error;
+  }
+  if (best.agreed < static_cast<int>(used.size())) {
+    const std::optional<LineSearch> found = search_lines(poses, config.board);
+    if (found && found->agreed > best.agreed) best = *found;
+  }
+  if (best.agreed > told) {
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      if (best.line[k] < 0) {
+        drop(seen, used[k], kNoLine);
+      } else {
+        seen.views[used[k]].points = poses[k].candidates.lines[static_cast<std::size_t>(best.line[k])].points;
+      }
+    }
+    return robust_closed_form(seen, config, X_BC_given);
+  }
+  // Measured over the poses of scenes/agiprobot/calibration.yaml: eight always find each other, of six half do.
+  constexpr std::size_t kEnough = 8;
+  if (refusal && used.size() < kEnough) {
+    throw Error(std::string(refusal->what()) + "; or the camera's place known within " +
+                std::to_string(config.guess.distance_m).substr(0, 4) + " m and " + std::to_string(config.guess.angle_deg).substr(0, 4) +
+                " deg (calibrate.guess), or eight poses");
+  }
+  if (refusal) throw Error(*refusal);
+  // The closed form of few poses is so rough that lines which the guess told rightly may miss their boards.
+  if (used.size() >= kEnough && best.agreed < config.least_poses) {
+    throw Error("the lines in the scans lie on the boards of " + std::to_string(best.agreed) + " of " + std::to_string(used.size()) +
+                " poses only; expected at least " + std::to_string(config.least_poses) + " on which one place of the camera agrees");
+  }
+  seen = std::move(guessed);
+  return best.X_CL;
+}
+
 double beam_rms(const BoardView& view, const Pose& X_CO, const Pose& X_CL, double bias_m) {
   const Eigen::Vector3d normal = X_CO.linear().col(2);
   double sum = 0.0;
@@ -138,7 +192,7 @@ void CalibrateConfig::visit(Fields& f) {
   f("laser", laser, "which one; empty: the only one");
   f.group("board", board, "the checkerboard");
   f.group("still", still, "when board and vehicle stand still");
-  f.group("guess", guess, "how far off the poses may be that are known beforehand");
+  f.group("guess", guess, "how far off the poses that are known beforehand are looked for; without success the search goes without them");
   f.group("refine", refine, "the refinement");
   f.group("lens", lens, "the camera's intrinsics");
   f("least_poses", least_poses, "fewer are refused", {.min = 5, .max = 1e6});
@@ -191,8 +245,7 @@ Calibration calibrate(const std::vector<StillPose>& still, const StreamInfo& inf
 
   Views seen = seen_boards(still, result.given, config);
   expect_determined(seen, config, result.X_BC_given);
-  pick_by_guess(seen, config, result.X_BC_given.inverse() * X_BL);
-  const Pose X_CL = robust_closed_form(seen, config, result.X_BC_given);
+  const Pose X_CL = first_estimate(seen, config, result.X_BC_given, X_BL);
   Refined& found = result.found;
   found = refine(seen.views, result.given, config.board, X_BL, X_BL * X_CL.inverse(), 0.0, config.refine);
   // Points anew, by what was found: beams at the board's ends come in, strangers go out.

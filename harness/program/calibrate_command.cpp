@@ -111,7 +111,7 @@ Command add_calibrate_command(CLI::App& program) {
   command->footer(
       "Examples:\n  waretwin calibrate scenes/agiprobot/calibration.yaml --out extrinsics.yaml\n"
       "  waretwin calibrate recordings/board --out extrinsics.yaml --board 9x6 --square 0.07\n"
-      "  waretwin run scenes/agiprobot/scenario.yaml --extrinsics extrinsics.yaml --out out/run\n\n"
+      "  waretwin map recordings/drive --extrinsics extrinsics.yaml --out out/map\n\n"
       "The vehicle stands; the board is held still for a second or more in each of 20 poses, turned and tilted differently "
       "(docs/calibration.md).\n"
       "Of a scenario the error against the truth is told, too. Keys for --set: `calibrate.` with board.columns, still.still_px,\n"
