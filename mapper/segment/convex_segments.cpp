@@ -37,35 +37,28 @@ Intrinsics thinned(const Intrinsics& intrinsics, int thin, int width, int height
 class Surface {
  public:
   Surface(const cv::Mat& depth, const Intrinsics& intrinsics, const GeometricConfig& config)
-      : config_(config), width_(depth.cols), height_(depth.rows) {
-    normals_ = fit_normals(depth, intrinsics, config.normal_window_px, config.normal_depth_share);
-    points_.resize(normals_.size());
-    parallel_for(static_cast<std::size_t>(height_), kRows, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        for (int u = 0; u < width_; ++u) {
-          const float z = depth.at<float>(static_cast<int>(v), u);
-          points_[at(u, static_cast<int>(v))] = (z * intrinsics.ray(u, static_cast<int>(v))).cast<float>();
-        }
-      }
-    });
-  }
+      : config_(config),
+        width_(depth.cols),
+        height_(depth.rows),
+        surface_(fit_surface(depth, intrinsics, config.normal_window_px, config.normal_depth_share)) {}
 
   std::size_t at(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
   }
-  bool measured(std::size_t i) const { return points_[i].z() > 0.0f; }
-  bool has_normal(std::size_t i) const { return !normals_[i].isZero(0.0f); }
-  const Eigen::Vector3f& point(std::size_t i) const { return points_[i]; }
+  bool measured(std::size_t i) const { return point(i).z() > 0.0f; }
+  bool has_normal(std::size_t i) const { return !normal(i).isZero(0.0f); }
+  const Eigen::Vector3f& point(std::size_t i) const { return surface_[i].p; }
+  const Eigen::Vector3f& normal(std::size_t i) const { return surface_[i].normal; }
 
   bool is_edge(int u, int v) const {
     const std::size_t i = at(u, v);
     return !measured(i) || !has_normal(i) || is_stepped(u, v) || is_concave(u, v);
   }
   // How far j lies before (> 0) or behind the plane of i, in metres.
-  float before_plane(std::size_t i, std::size_t j) const { return normals_[i].dot(points_[j] - points_[i]); }
+  float before_plane(std::size_t i, std::size_t j) const { return normal(i).dot(point(j) - point(i)); }
   // A step that is larger than noise and slope explain.
   bool step_between(std::size_t i, std::size_t j) const {
-    return std::abs(before_plane(i, j)) > config_.discontinuity_share * points_[i].z();
+    return std::abs(before_plane(i, j)) > config_.discontinuity_share * point(i).z();
   }
 
  private:
@@ -87,16 +80,16 @@ class Surface {
     const std::size_t i = at(u, v);
     const auto margin = static_cast<float>(config_.concave_margin_m), least = static_cast<float>(config_.min_convexity);
     return any_around(u, v, config_.convexity_window_px / 2, [&](std::size_t j) {
-      if (!has_normal(j) || normals_[i].dot(normals_[j]) >= least) return false;
+      if (!has_normal(j) || normal(i).dot(normal(j)) >= least) return false;
       // Which of both planes lies before the other's point, on the whole: fitted normals turn before the edge does, and by one plane alone
       // a convex edge would look concave from there.
-      return (points_[j] - points_[i]).dot(normals_[i] - normals_[j]) > margin;
+      return (point(j) - point(i)).dot(normal(i) - normal(j)) > margin;
     });
   }
 
   const GeometricConfig& config_;
   int width_, height_;
-  std::vector<Eigen::Vector3f> points_, normals_;
+  std::vector<SurfacePoint> surface_;
 };
 
 // Connected pixels without edges, in the order of their first pixels; small ones are left out.
@@ -157,15 +150,18 @@ void grow(const Surface& surface, int rings, ConvexSegments& segments) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> fit_normals(const cv::Mat& depth, const Intrinsics& intrinsics, int window_px, double depth_share) {
+std::vector<SurfacePoint> fit_surface(const cv::Mat& depth, const Intrinsics& intrinsics, int window_px, double depth_share) {
   WARETWIN_CHECK(depth.type() == CV_32FC1 && window_px % 2 == 1, "a depth picture and an odd window");
   const int radius = window_px / 2;
-  std::vector<Eigen::Vector3f> normals(depth.total(), Eigen::Vector3f::Zero());
+  std::vector<SurfacePoint> surface(depth.total());
   parallel_for(static_cast<std::size_t>(depth.rows), kRows, [&](std::size_t begin, std::size_t end) {
     for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       for (int u = 0; u < depth.cols; ++u) {
         const float z = depth.at<float>(v, u);
         if (!(z > 0.0f)) continue;
+        SurfacePoint& point = surface[static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.cols) + static_cast<std::size_t>(u)];
+        const Eigen::Vector3d ray = intrinsics.ray(u, v);
+        point.p = (z * ray).cast<float>();
         const auto reach = static_cast<float>(depth_share * z);
         // Least squares of 1/z = a du + b dv + c over the window.
         float n = 0, su = 0, sv = 0, suu = 0, suv = 0, svv = 0, sw = 0, swu = 0, swv = 0;
@@ -189,13 +185,13 @@ std::vector<Eigen::Vector3f> fit_normals(const cv::Mat& depth, const Intrinsics&
         const double c = (sw - a * su - b * sv) / n;  // 1/z at the pixel itself
         // On the plane p.m = 1 it is 1/z = m.ray, and the ray is linear in the pixel; m points away from the camera.
         const Eigen::Vector3d m(a * intrinsics.fx, b * intrinsics.fy, c - a * (u - intrinsics.cx) - b * (v - intrinsics.cy));
-        if (!(m.squaredNorm() > 0.0)) continue;
-        normals[static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.cols) + static_cast<std::size_t>(u)] =
-            (-m.normalized()).cast<float>();
+        if (!(m.squaredNorm() > 0.0) || !(c > 0.0)) continue;
+        point.p = (ray / c).cast<float>();
+        point.normal = (-m.normalized()).cast<float>();
       }
     }
   });
-  return normals;
+  return surface;
 }
 
 ConvexSegments find_convex_segments(const cv::Mat& depth, const Intrinsics& intrinsics, double depth_min, double depth_max,

@@ -25,8 +25,14 @@ struct ConvexSegments {
 ConvexSegments find_convex_segments(const cv::Mat& depth, const Intrinsics& intrinsics, double depth_min, double depth_max,
                                     const GeometricConfig& config);
 
-// Normals by pixel of an organised picture, towards the camera; zero where none could be fitted. Inverse depth is a linear function of the
-// pixel on a plane, so that a fit of it is right at any incidence. Shown for tests.
-std::vector<Eigen::Vector3f> fit_normals(const cv::Mat& depth, const Intrinsics& intrinsics, int window_px, double depth_share);
+// What a pixel sees of a surface, camera frame.
+struct SurfacePoint {
+  Eigen::Vector3f p = Eigen::Vector3f::Zero();       // metres, on the fitted plane; as measured where none could be fitted; 0 without depth
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // towards the camera; 0 where none could be fitted
+};
+
+// By pixel of an organised picture, a plane fitted to the window around it, without the pixels whose depth differs by more than depth_share.
+// Inverse depth is a linear function of the pixel on a plane, so that a fit of it is right at any incidence. Shown for tests.
+std::vector<SurfacePoint> fit_surface(const cv::Mat& depth, const Intrinsics& intrinsics, int window_px, double depth_share);
 
 }  // namespace waretwin

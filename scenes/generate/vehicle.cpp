@@ -20,8 +20,9 @@ constexpr const char* kPaper =
 constexpr const char* kHome =
     "# The vehicle's sensors by name. A preset stands for a product's data sheet; any of its values can be set beside it.\n"
     "sensors:\n  cameras:\n    camera:\n"
-    "      # With the picture, field and range of the hand-held cameras of their day.\n"
-    "      preset: realsense_d435\n      width: 640\n      height: 480\n      horizontal_fov_deg: 58\n      vertical_fov_deg: 45\n"
+    "      # With the picture, field, range and noise of the hand-held cameras that SceneNN was made with.\n"
+    "      preset: realsense_d435\n      stereo: {subpixel_px: 0.03}\n      width: 640\n      height: 480\n      horizontal_fov_deg: 58\n  "
+    "    vertical_fov_deg: 45\n"
     "      field: {horizontal_deg: 58, vertical_deg: 45}\n      depth_min_m: 0.5\n      depth_max_m: 4.0\n      rate_hz: 30\n"
     "      # At eye height, looking forward and 25 degrees down.\n"
     "      mount: {x_m: 0.0, y_m: 0.0, z_m: 1.45, pitch_deg: 25}\n"

@@ -56,13 +56,14 @@ TEST(ConvexSegments, NormalsAreThoseOfThePlaneAtAnyIncidence) {
         if (slope < -0.1) depth.at<float>(v, u) = static_cast<float>(-1.4 / slope);
       }
     }
-    const std::vector<Eigen::Vector3f> normals = fit_normals(depth, kView, 9, 0.2);
+    const std::vector<SurfacePoint> surface = fit_surface(depth, kView, 9, 0.2);
     const Eigen::Vector3f up_C = (X_WC.linear().transpose() * Eigen::Vector3d::UnitZ()).cast<float>();
     int fitted = 0;
-    for (const Eigen::Vector3f& normal : normals) {
-      if (normal.isZero(0.0f)) continue;
+    for (const SurfacePoint& point : surface) {
+      if (point.normal.isZero(0.0f)) continue;
       ++fitted;
-      ASSERT_GT(normal.dot(up_C), 0.99999f) << pitch_deg;
+      ASSERT_GT(point.normal.dot(up_C), 0.99999f) << pitch_deg;
+      ASSERT_NEAR(point.p.dot(up_C), -1.4f, 1e-4f) << pitch_deg;
     }
     EXPECT_GT(fitted, cv::countNonZero(depth) * 0.99);
   }
