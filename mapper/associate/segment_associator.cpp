@@ -136,8 +136,7 @@ void SegmentAssociator::vote(const std::vector<SegmentedObject>& objects, const 
 
 void SegmentAssociator::list_objects(const TsdfVolume& volume, ObjectList& map) {
   const std::map<int, std::vector<int>> instances = records_.instances();
-  // An integrator counts a label this far from the points that have it, at most.
-  const double reach = volume.truncation_m() + 2.0 * volume.voxel_m();
+  const double reach = label_reach_m(volume.config());
   std::map<std::int32_t, Eigen::AlignedBox3d> wanted;
   for (const auto& [instance, segments] : instances) {
     for (const int segment : segments) {

@@ -73,6 +73,11 @@ void collect(const TsdfVolume& volume, const TsdfBlock& block, const std::vector
 
 }  // namespace
 
+double label_reach_m(const TsdfConfig& config) {
+  const double truncations = config.method == "projection" ? config.projection.along_truncations : 1.0;
+  return truncations * config.truncation_m() + 2.0 * config.voxel_m;
+}
+
 std::map<std::int32_t, std::vector<Eigen::Vector3f>> label_surface(const TsdfVolume& volume,
                                                                    const std::map<std::int32_t, Eigen::AlignedBox3d>& labels) {
   std::vector<WantedLabel> wanted;

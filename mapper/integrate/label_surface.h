@@ -11,6 +11,9 @@
 
 namespace waretwin {
 
+// How far from a pixel's point lie the voxels that count its label, at most; metres.
+double label_reach_m(const TsdfConfig& config);
+
 // One point (metres, W) where the distance between two neighbouring voxels passes 0, for the labels asked for: the label is L(v) of the
 // voxel nearer to the point. Ascending by blocks and voxels; distances farther apart than the truncation are where two views met, and make
 // none (as in mesher.h). The same at any number of threads. A label is sought only in the blocks

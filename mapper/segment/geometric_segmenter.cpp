@@ -36,44 +36,57 @@ std::vector<std::int32_t> spread(const ConvexSegments& segments, const cv::Mat& 
   return labels;
 }
 
-// The picture's pixels that a detection calls its object's.
-class Region {
- public:
-  Region(const Detection& detection, const cv::Size& picture) : box_(detection.box) {
-    if (detection.mask.empty()) return;
-    WARETWIN_CHECK(detection.mask.size == picture, "a mask is one of the whole picture");
-    mask_ = mask_picture(detection.mask);
+// Visits the picture's pixels that a detection calls its object's, as v * width + u: those of its mask, else those with their centre in its
+// box.
+template <class Visit>
+void visit_pixels(const Detection& detection, int width, int height, Visit&& visit) {
+  if (!detection.mask.empty()) {
+    WARETWIN_CHECK(detection.mask.size == cv::Size(width, height), "a mask is one of the whole picture");
+    int at = 0;  // column by column
+    bool inside = false;
+    for (const int run : detection.mask.runs) {
+      for (int k = inside ? at : at + run; k < at + run; ++k) visit(k % height * width + k / height);
+      at += run;
+      inside = !inside;
+    }
+    return;
   }
-  bool is_mask() const { return !mask_.empty(); }
-  double area() const { return box_.area(); }
-  bool holds(int u, int v) const {
-    if (is_mask()) return mask_.at<std::uint8_t>(v, u) != 0;
-    return box_.contains(cv::Point2f(static_cast<float>(u) + 0.5f, static_cast<float>(v) + 0.5f));
+  const cv::Rect2f& box = detection.box;
+  const auto first = [](float edge, int last) { return std::clamp(static_cast<int>(std::ceil(edge - 0.5f)), 0, last); };
+  for (int v = first(box.y, height); v < first(box.y + box.height, height); ++v) {
+    for (int u = first(box.x, width); u < first(box.x + box.width, width); ++u) visit(v * width + u);
   }
+}
 
- private:
-  cv::Rect2f box_;
-  cv::Mat mask_;  // empty: the box is all that is known
-};
-
-// The detection that holds the segment: the mask with most of its pixels, else the smallest box; -1 = background.
-int detection_of(const std::vector<int>& pixels, int width, const std::vector<Region>& regions, const GeometricConfig& config) {
-  int best = -1;
-  bool by_mask = false;
-  double rank = 0.0;  // the higher one wins
-  for (std::size_t k = 0; k < regions.size(); ++k) {
-    const Region& region = regions[k];
-    const auto inside = static_cast<double>(
-        std::count_if(pixels.begin(), pixels.end(), [&](int pixel) { return region.holds(pixel % width, pixel / width); }));
-    if (inside < config.box_share * static_cast<double>(pixels.size())) continue;
-    if (!region.is_mask() && inside < config.min_box_fill * region.area()) continue;
-    const double its_rank = region.is_mask() ? inside : -region.area();
-    if (best >= 0 && (by_mask != region.is_mask() ? by_mask : its_rank <= rank)) continue;
-    best = static_cast<int>(k);
-    by_mask = region.is_mask();
-    rank = its_rank;
+// The detection that each segment is part of: the mask with most of its pixels, else the smallest box; -1 = background. `labels` by pixel,
+// `sizes` by label.
+std::vector<int> match_detections(const std::vector<std::int32_t>& labels, const std::vector<int>& sizes, int width,
+                                  const std::vector<Detection>& detections, const GeometricConfig& config) {
+  struct Held {
+    int detection = -1;
+    bool by_mask = false;
+    double rank = 0.0;  // the higher one holds it
+  };
+  std::vector<Held> held(sizes.size());
+  std::vector<int> inside(sizes.size());
+  for (std::size_t k = 0; k < detections.size(); ++k) {
+    std::fill(inside.begin(), inside.end(), 0);
+    visit_pixels(detections[k], width, static_cast<int>(labels.size()) / width,
+                 [&](int pixel) { ++inside[static_cast<std::size_t>(labels[static_cast<std::size_t>(pixel)])]; });
+    const bool is_mask = !detections[k].mask.empty();
+    const double area = detections[k].box.area();
+    for (std::size_t label = 1; label < sizes.size(); ++label) {
+      if (inside[label] == 0 || inside[label] < config.box_share * sizes[label]) continue;
+      if (!is_mask && inside[label] < config.min_box_fill * area) continue;
+      const double rank = is_mask ? inside[label] : -area;
+      Held& holder = held[label];
+      if (holder.detection >= 0 && (holder.by_mask != is_mask ? holder.by_mask : rank <= holder.rank)) continue;
+      holder = {static_cast<int>(k), is_mask, rank};
+    }
   }
-  return best;
+  std::vector<int> matched;
+  for (const Held& holder : held) matched.push_back(holder.detection);
+  return matched;
 }
 
 }  // namespace
@@ -103,14 +116,18 @@ Segmentation GeometricSegmenter::segment(const RgbdFrame& frame, const Intrinsic
     object.points_W.push_back((X_WC * (static_cast<double>(frame.depth.at<float>(v, u)) * intrinsics.ray(u, v))).cast<float>());
   }
 
-  std::vector<Region> regions;
-  for (const Detection& detection : detections) regions.emplace_back(detection, frame.depth.size());
+  std::vector<int> sizes(objects.size() + 1);
+  for (std::size_t i = 0; i < objects.size(); ++i) sizes[i + 1] = static_cast<int>(objects[i].pixels.size());
+  const std::vector<int> matched = match_detections(labels, sizes, intrinsics.width, detections, geometric_);
+
   Segmentation result;
   std::set<int> found;
-  for (SegmentedObject& object : objects) {
-    object.detection_index = detection_of(object.pixels, intrinsics.width, regions, geometric_);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    SegmentedObject& object = objects[i];
+    object.detection_index = matched[i + 1];
     if (object.detection_index >= 0) {
-      object.detection = detections[static_cast<std::size_t>(object.detection_index)];
+      const Detection& detection = detections[static_cast<std::size_t>(object.detection_index)];
+      object.detection = {detection.class_name, detection.box, detection.score};
       found.insert(object.detection_index);
     }
     result.objects.push_back(std::move(object));

@@ -25,7 +25,7 @@ struct EvidenceRay {
 };
 
 struct SegmentedObject {
-  Detection detection;
+  Detection detection;                    // without its mask
   std::vector<int> pixels;                // v * width + u of the object's pixels in the frame, ascending
   std::vector<Eigen::Vector3f> points_W;  // one per pixel, same order
   Cuboid cuboid;                          // around points_W, frame "world"
