@@ -25,9 +25,10 @@ MapperConfig MapperConfig::make(const std::string& profile) {
     // Their settings for SceneNN at 1 Hz.
     config.segments.merging_min_overlap_ratio = 0.15;
     config.segments.merging_min_frame_count = 3;
-    // Ours: a box, unlike a mask, also shows what stands behind and beside (docs/voxbloxpp.md).
-    config.segments.background_factor = 1.0;
-    config.geometric.min_box_fill = 0.03;
+    // Ours, chosen on generated halls (docs/voxbloxpp.md): one wrong frame must not make a wall part of an object for good, and a box,
+    // unlike a mask, also shows what stands behind and beside.
+    config.segments.background_factor = 0.5;
+    config.geometric.min_box_fill = 0.02;
     return config;
   }
   throw Error("profile '" + profile + "' is not known; expected paper, best or voxbloxpp");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "harness/gate/markdown_table.h"
 
@@ -95,6 +96,8 @@ Row row_of(const ComparedValue& value) {
           verdict_text(value)};
 }
 
+bool is_of_trajectory(const Measure& measure) { return std::string_view(measure.place).starts_with("/trajectory/"); }
+
 }  // namespace
 
 bool Comparison::worse() const {
@@ -109,8 +112,9 @@ Comparison compare_scores(const JudgedScore& before, const JudgedScore& after, c
     const Measure& measure = measures()[i];
     ComparedValue value{measure.name, before.values[i], after.values[i], tolerances.measures.values[i], Verdict::kNotJudged};
     if (!value.before && !value.after) continue;
-    // What one of the two has no stage for is no loss.
+    // What one of the two has no stage for, or need not tell, is no loss.
     if (measure.ours && (before.of_another_mapper() || after.of_another_mapper())) value.tolerance.reset();
+    if (is_of_trajectory(measure) && !value.after && after.of_another_mapper() && !before.of_another_mapper()) value.tolerance.reset();
     value.verdict = verdict_of(value.before, value.after, measure.more_is_better, value.tolerance);
     comparison.values.push_back(value);
   }

@@ -28,7 +28,8 @@ struct Comparison {
 };
 
 // A value that grew worse by more than its tolerance, or is gone, is worse; one that grew better by more is better. What `before` lacks is
-// not judged, and neither is what has no tolerance, nor what comes of our own stages where one of the two is another mapper's.
+// not judged, and neither is what has no tolerance, nor what comes of our own stages where one of the two is another mapper's, nor a
+// trajectory that another mapper leaves none of where ours was before.
 Comparison compare_scores(const JudgedScore& before, const JudgedScore& after, const Tolerances& tolerances);
 
 // What does not reach its mark. A measure that has a mark and no value has failed.

@@ -117,10 +117,10 @@ std::string about_missing(const ListedObject& object, const std::vector<ListedOb
   }
   const std::string seen = ", though " + share(object.visible_fraction) + " of its surface was seen";
   if (nearest < 2.0 * rules.max_centre_distance_m) {
-    return "never detected where it stands" + seen + "; the nearest mapped " + object.class_name + " (" + std::to_string(id) + ") is " +
+    return "not in the map where it stands" + seen + "; the nearest mapped " + object.class_name + " (" + std::to_string(id) + ") is " +
            metres(nearest) + " away";
   }
-  return "never detected" + seen;
+  return "not in the map" + seen;
 }
 
 std::string about_pair(const ListedObject& mapped, const ListedObject& object, const ObjectScore& row,
@@ -177,7 +177,8 @@ std::vector<Explanation> explain(const std::vector<ListedObject>& mapped, const 
     if (!row.counted) {
       lines.push_back(
           {row.truth_id, row.map_id,
-           "half seen: " + share(row.visible_fraction) + " of its surface, " + share(rules.min_visible_fraction) + " would count"});
+           (row.visible_fraction > 0.0 ? "half seen: " + share(row.visible_fraction) + " of its surface" : std::string("not seen at all")) +
+               ", " + share(rules.min_visible_fraction) + " would count"});
       continue;
     }
     if (!partner) {

@@ -26,11 +26,11 @@ std::string why(const std::vector<ListedObject>& mapped, const std::vector<Liste
 TEST(Explain, SaysNothingOfGoodObjects) { EXPECT_TRUE(explained({object(4, 0.003, 0)}, {object(1, 0, 0)}).empty()); }
 
 TEST(Explain, NeverDetected) {
-  EXPECT_EQ(why({}, {object(1, 0, 0)}), "never detected, though 0.90 of its surface was seen");
+  EXPECT_EQ(why({}, {object(1, 0, 0)}), "not in the map, though 0.90 of its surface was seen");
   const auto lines = explained({object(7, 1.5, 0)}, {object(1, 0, 0)});
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].text,
-            "never detected where it stands, though 0.90 of its surface was seen; the nearest mapped conveyor (7) is 1.50 m away");
+            "not in the map where it stands, though 0.90 of its surface was seen; the nearest mapped conveyor (7) is 1.50 m away");
   EXPECT_EQ(lines[0].truth_id, 1);
   EXPECT_EQ(lines[1].map_id, 7);
   EXPECT_EQ(lines[1].text, "nothing of its class there: the nearest true conveyor (1) is 1.50 m away");
@@ -40,6 +40,8 @@ TEST(Explain, HalfSeen) {
   ListedObject truth = object(1, 0, 0);
   truth.visible_fraction = 0.43;
   EXPECT_EQ(why({}, {truth}), "half seen: 0.43 of its surface, 0.60 would count");
+  truth.visible_fraction = 0.0;
+  EXPECT_EQ(why({}, {truth}), "not seen at all, 0.60 would count");
   // Of a counted one the end is missing.
   ListedObject half = object(3, 0, 0, 0.0, {0.40, 0.4, 0.15});
   half.cuboid.centre.x() = -0.1;

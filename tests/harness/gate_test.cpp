@@ -161,6 +161,12 @@ TEST(Gate, AnotherMapperIsNotJudgedByOurStages) {
   EXPECT_EQ(values_of(ours), 3);
   EXPECT_EQ(values_of(theirs), 1) << "nobody asked it for its poses";
   EXPECT_FALSE(compare_scores(ours, theirs, Tolerances()).worse());
+  // A trajectory is theirs to leave or not; one that they left once is expected again.
+  JudgedScore with = ours, left = theirs;
+  set_value(with, "ate_rmse_m", 0.01);
+  set_value(left, "ate_rmse_m", 0.01);
+  EXPECT_EQ(verdict_of(compare_scores(with, theirs, {}), "ate_rmse_m"), Verdict::kNotJudged);
+  EXPECT_EQ(verdict_of(compare_scores(left, theirs, {}), "ate_rmse_m"), Verdict::kWorse);
   const JudgedScore lost = judged_score(R"({"schema": 1, "profile": "mapper", "summary": {"recall": 0.5}})", "lost.json");
   EXPECT_TRUE(compare_scores(ours, lost, Tolerances()).worse());
 }
