@@ -67,12 +67,17 @@ void remove_other_drives(const fs::path& out, const std::map<std::string, std::s
     // Names of drives have no dots; that of one under way has.
     const std::string name = at->path().filename().string();
     const auto known = units.find(name.substr(0, name.find('.')));
-    if (known == units.end() || read_file(mark) != known->second + "\n") others.push_back(at->path());
+    try {
+      if (known == units.end() || read_file(mark) != known->second + "\n") others.push_back(at->path());
+    } catch (const Error&) {
+      // Another shard has just moved its own into place.
+    }
   }
   for (const fs::path& folder : others) {
-    std::error_code error;
+    std::error_code error, ignored;
     fs::remove_all(folder, error);
-    if (error) throw Error(folder, "cannot be taken away: " + error.message());
+    // Another shard may have taken it away at the same time.
+    if (error && fs::exists(folder, ignored)) throw Error(folder, "cannot be taken away: " + error.message());
   }
 }
 
