@@ -11,12 +11,14 @@ class ValueFinder : public Fields {
   explicit ValueFinder(const std::string& key) : key_(key) {}
   void reject(const char*, const std::string&) override {}
   std::optional<std::string> found;
+  bool found_text = false;
 
  protected:
   void scalar(const char* key, FieldRef value, const char*, const FieldRule&) override {
     if (joined_key(prefix(), key) != key_) return;
     const auto* text = std::get_if<std::string*>(&value);
-    found = text != nullptr ? **text : field_as_yaml(value);
+    found_text = text != nullptr;
+    found = found_text ? **text : field_as_yaml(value);
   }
   bool enter(const char* key, const char*, const FieldRule&) override { return push(key); }
   bool enter_list(const char* key, std::size_t&, const char*, const FieldRule&) override { return push(key); }
@@ -41,6 +43,12 @@ std::optional<std::string> value_of(const std::string& key, const VisitFunction&
   ValueFinder finder(key);
   visit(finder);
   return finder.found;
+}
+
+bool is_text(const std::string& key, const VisitFunction& visit) {
+  ValueFinder finder(key);
+  visit(finder);
+  return finder.found_text;
 }
 
 }  // namespace waretwin

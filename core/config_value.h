@@ -12,4 +12,7 @@ namespace waretwin {
 // visited field has the path.
 std::optional<std::string> value_of(const std::string& key, const VisitFunction& visit);
 
+// Whether the field with this path holds a text; not where no visited field has the path.
+bool is_text(const std::string& key, const VisitFunction& visit);
+
 }  // namespace waretwin

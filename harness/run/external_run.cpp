@@ -1,6 +1,8 @@
 #include "harness/run/external_run.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
@@ -26,15 +28,36 @@ constexpr const char* kOut = "{out}";
 constexpr const char* kBoxes = "{boxes}";
 constexpr std::size_t kMostOfALine = 200;  // of the command's own words
 
+// Of a log that may be as long as the disk is large; none where the command took it away.
 std::vector<std::string> last_lines(const fs::path& file, std::size_t count) {
+  constexpr std::streamoff kTail = 64 << 10;
   std::vector<std::string> lines;
-  std::istringstream in(read_file(file));
-  for (std::string line; std::getline(in, line);) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return lines;
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg(), begin = std::max<std::streamoff>(0, size - kTail);
+  in.seekg(begin);
+  std::string tail(static_cast<std::size_t>(std::min(std::max<std::streamoff>(0, size), kTail)), '\0');
+  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+  tail.resize(static_cast<std::size_t>(in.gcount()));
+  std::istringstream text(tail);
+  for (std::string line; std::getline(text, line);) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     lines.push_back(line);
     if (lines.size() > count) lines.erase(lines.begin());
   }
   return lines;
+}
+
+// Whether the command left the file. Throws Error for what is there and is no file: a pipe would be read for ever.
+bool is_left(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status found = fs::status(file, error);
+  if (found.type() == fs::file_type::not_found) return false;
+  if (error) throw Error(file, "cannot be looked at: " + error.message());
+  if (!fs::is_regular_file(found)) throw Error(file, "is a folder, a pipe or the like; expected a file");
+  return true;
 }
 
 // The folder of what the command leaves, empty.
@@ -114,9 +137,15 @@ void check_external(const RunConfig& config) {
     if (!file->empty()) throw Error(std::string(name) + ": " + *file + " is for our own mapper; expected none with another one");
   }
   for (const std::string& file : mapper.depends) {
-    if (!fs::exists(file))
-      throw Error("external_mapper.depends: '" + file + "' is not there; expected a file or folder, named from " +
+    std::error_code error;
+    const fs::file_status found = fs::status(file, error);
+    if (!fs::is_regular_file(found) && !fs::is_directory(found)) {
+      const std::string what = found.type() == fs::file_type::not_found ? "is not there"
+                               : error                                  ? "cannot be looked at (" + error.message() + ")"
+                                                                        : "is neither of both";
+      throw Error("external_mapper.depends: '" + file + "' " + what + "; expected a file or folder, named from " +
                   fs::current_path().string());
+    }
   }
 }
 
@@ -180,7 +209,7 @@ ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<co
 
   const fs::path cuboids = out / "cuboids.json", poses = out / "trajectory.tum";
   try {
-    if (!fs::exists(cuboids)) throw Error(cuboids, "is missing though the mapper ended well; expected a list of objects as cuboids.json");
+    if (!is_left(cuboids)) throw Error(cuboids, "is missing though the mapper ended well; expected a list of objects as cuboids.json");
     result.mapped = read_object_list(cuboids);
   } catch (const Error& error) {
     result.list_problem = error.what();
@@ -188,7 +217,7 @@ ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<co
   }
   std::vector<std::pair<Pose, Pose>> pairs;
   try {
-    if (fs::exists(poses)) {
+    if (is_left(poses)) {
       result.trajectory = read_trajectory(poses);
       pairs = associate_poses(*result.trajectory, {drive.true_trajectory, true});
     }
@@ -238,8 +267,12 @@ void write_external(RunFolder& folder, const RunConfig& config, const ExternalRu
   const std::string json = score_json(*result.score);
   write_report(folder.path(), ReportKind::kRun, json);
   folder.write("score.json", json);
+  if (!config.external_mapper.keep_recording) remove_recording(folder);
+}
+
+void remove_recording(const RunFolder& folder) {
   std::error_code stays;
-  if (!config.external_mapper.keep_recording) fs::remove_all(folder.path() / "mapper/recording", stays);
+  fs::remove_all(folder.path() / "mapper/recording", stays);
 }
 
 }  // namespace waretwin

@@ -58,4 +58,7 @@ std::string trajectory_text(const ExternalRunResult& result, const std::filesyst
 // score.json (last); the recording is then taken away, unless external_mapper.keep_recording.
 void write_external(RunFolder& folder, const RunConfig& config, const ExternalRunResult& result);
 
+// Takes mapper/recording away: a drive takes gigabytes, and of many failures one recording is enough to find the fault by.
+void remove_recording(const RunFolder& folder);
+
 }  // namespace waretwin

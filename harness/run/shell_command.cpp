@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "core/error.h"
@@ -99,53 +100,70 @@ class WaitsForChildren {
   }
 };
 
-// A process group that ends with the scope.
+// A process group that ends with the scope. Its leader, the shell, is not reaped before: so long nobody else gets the group's number.
 class Group {
  public:
   explicit Group(pid_t leader) : leader_(leader) {}
   ~Group() {
     kill(-leader_, SIGKILL);
-    if (!reaped_) waitpid(leader_, nullptr, 0);
+    waitpid(leader_, nullptr, 0);
   }
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 
-  void signal(int number) const { kill(-leader_, number); }
-  // Asks it to end and waits so long for it: what it started elsewhere (a container) may be ended by it alone.
-  void end_politely(double patience_s) {
+  // Asks it to end and waits so long for the last of it, which may outlive the shell (a mapper in a pipeline): what it started elsewhere (a
+  // container) may be ended by it alone. Then it is ended.
+  void end_politely(double patience_s) const {
     const auto start = Clock::now();
-    signal(SIGTERM);
-    for (int status = 0; !done(status) && seconds_since(start) < patience_s;) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    kill(-leader_, SIGTERM);
+    while (is_living() && seconds_since(start) < patience_s) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(-leader_, SIGKILL);
   }
-  // Whether the shell is done; then how.
-  bool done(int& status) {
-    const pid_t found = waitpid(leader_, &status, WNOHANG);
-    if (found < 0 && errno != EINTR) {
-      reaped_ = true;
-      throw InternalError("a command was lost: " + std::string(std::strerror(errno)));
+  // The shell's exit code, of a signal 128 more; nothing while it runs, unless it is waited for.
+  std::optional<int> exit_code(bool waits = false) const {
+    siginfo_t info = {};
+    while (waitid(P_PID, static_cast<id_t>(leader_), &info, WEXITED | WNOWAIT | (waits ? 0 : WNOHANG)) != 0) {
+      if (errno != EINTR) throw InternalError("a command was lost: " + std::string(std::strerror(errno)));
     }
-    reaped_ = found == leader_;
-    return reaped_;
+    if (info.si_pid == 0) return std::nullopt;
+    return info.si_code == CLD_EXITED ? info.si_status : 128 + info.si_status;
   }
   // The most that any of its processes of now has held. (What the kernel says of an ended child counts what this program held when it
   // was started.)
   double peak_rss_mb() const {
     double peak = 0.0;
-    std::error_code ignored;
-    for (std::filesystem::directory_iterator at("/proc", ignored), end; !ignored && at != end; at.increment(ignored)) {
-      const std::string name = at->path().filename().string();
-      if (name.find_first_not_of("0123456789") != std::string::npos || getpgid(static_cast<pid_t>(std::stol(name))) != leader_) continue;
-      std::ifstream status(at->path() / "status");
+    each_process([&](const std::filesystem::path& process) {
+      std::ifstream status(process / "status");
       for (std::string line; std::getline(status, line);) {
         if (line.rfind("VmHWM:", 0) == 0) peak = std::max(peak, std::strtod(line.c_str() + 6, nullptr) / 1024.0);
       }
-    }
+    });
     return peak;
   }
 
  private:
+  // With the folder that the kernel keeps of it.
+  void each_process(const std::function<void(const std::filesystem::path&)>& look) const {
+    std::error_code ignored;
+    for (std::filesystem::directory_iterator at("/proc", ignored), end; !ignored && at != end; at.increment(ignored)) {
+      const std::string name = at->path().filename().string();
+      if (name.find_first_not_of("0123456789") == std::string::npos && getpgid(static_cast<pid_t>(std::stol(name))) == leader_)
+        look(at->path());
+    }
+  }
+  // Whether any of it is more than an ended process that nobody has reaped.
+  bool is_living() const {
+    bool living = false;
+    each_process([&](const std::filesystem::path& process) {
+      std::ifstream status(process / "status");
+      for (std::string line; std::getline(status, line);) {
+        if (line.rfind("State:", 0) == 0) living = living || line.find_first_of("ZX", 6) == std::string::npos;
+      }
+    });
+    return living;
+  }
+
   pid_t leader_;
-  bool reaped_ = false;
 };
 
 // The text as it stands within a shell's quotes.
@@ -192,14 +210,15 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
   Group group(child);
   started.wait();
   ShellResult result;
-  int status = 0;
-  for (bool asked = false; !group.done(status);) {
+  std::optional<int> exit_code;
+  while (!(exit_code = group.exit_code())) {
     const double now = seconds_since(start);
-    if (timeout_s > 0.0 && now > timeout_s && !asked) {
-      result.timed_out = asked = true;
-      group.signal(SIGTERM);
+    if (timeout_s > 0.0 && now > timeout_s) {
+      result.timed_out = true;
+      group.end_politely(kGrace_s);
+      exit_code = group.exit_code(true);
+      break;
     }
-    if (asked && now > timeout_s + kGrace_s) group.signal(SIGKILL);
     result.peak_rss_mb = std::max(result.peak_rss_mb, group.peak_rss_mb());
     try {
       if (waiting) waiting(now);
@@ -211,7 +230,7 @@ ShellResult run_shell(const std::string& command, const std::filesystem::path& s
     std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(now / 10.0, 0.002, 0.1)));
   }
   result.wall_s = seconds_since(start);
-  result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  result.exit_code = *exit_code;
   return result;
 }
 

@@ -16,10 +16,10 @@ struct ShellResult {
 };
 
 // Runs `command` by /bin/sh in a process group of its own, its outputs into the two files (made anew), its input empty. After `timeout_s`
-// (0: never) the group gets SIGTERM, and SIGKILL three seconds later. `waiting` is called some ten times a second with the seconds so far;
-// what it throws (an interruption) ends the group in the same way, and is passed on. What it leaves behind of its group is ended. Several
-// may run at a time, from threads that outlive them. Throws Error where a file cannot be made, InternalError where no process can be
-// started.
+// (0: never) the group gets SIGTERM, and what is left of it three seconds later SIGKILL. `waiting` is called some ten times a second with
+// the seconds so far; what it throws (an interruption) ends the group in the same way, and is passed on. What it leaves behind of its group
+// is ended. Where this program itself is killed, the shell gets SIGTERM, what the shell started goes on. Several may run at a time, from
+// threads that outlive them. Throws Error where a file cannot be made, InternalError where no process can be started.
 ShellResult run_shell(const std::string& command, const std::filesystem::path& stdout_file, const std::filesystem::path& stderr_file,
                       double timeout_s, const std::function<void(double)>& waiting = {});
 

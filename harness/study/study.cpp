@@ -22,6 +22,7 @@
 #include "harness/score/score_json.h"
 #include "harness/study/study_files.h"
 #include "harness/study/study_units.h"
+#include "harness/units/callers_stop.h"
 
 namespace waretwin {
 
@@ -36,10 +37,52 @@ struct Drive {
   RunConfig config;
   std::string unit;
 
+  // Of its folder.
+  std::string name(const std::vector<Candidate>& candidates) const {
+    return candidates[candidate].name + "-" + in_hall->hall + "-" + std::to_string(config.scenario.seed);
+  }
   std::string text(const std::vector<Candidate>& candidates) const {
     return candidates[candidate].name + " in " + in_hall->hall + ", seed " + std::to_string(config.scenario.seed);
   }
 };
+
+// What one became.
+struct Driven {
+  UnitRecord record;
+  int exit_code = 0;  // of another mapper's command
+};
+
+// Where another mapper's drives are kept; kUnit in each says which unit's it is.
+constexpr const char* kDrives = "drives";
+constexpr const char* kUnit = "unit.txt";
+
+// Takes away what was left by drives that are none of these.
+void remove_other_drives(const fs::path& out, const std::map<std::string, std::string>& units) {
+  std::error_code none;
+  std::vector<fs::path> others;
+  for (fs::directory_iterator at(out / kDrives, none), end; !none && at != end; at.increment(none)) {
+    const fs::path mark = at->path() / kUnit;
+    std::error_code ignored;
+    if (!fs::is_regular_file(mark, ignored)) continue;  // not of our making
+    // Names of drives have no dots; that of one under way has.
+    const std::string name = at->path().filename().string();
+    const auto known = units.find(name.substr(0, name.find('.')));
+    try {
+      if (known == units.end() || read_file(mark) != known->second + "\n") others.push_back(at->path());
+    } catch (const Error&) {
+      // Another shard has just moved its own into place.
+    }
+  }
+  for (const fs::path& folder : others) {
+    std::error_code error, ignored;
+    fs::remove_all(folder, error);
+    // Another shard may have taken it away at the same time.
+    if (error && fs::exists(folder, ignored)) throw Error(folder, "cannot be taken away: " + error.message());
+  }
+}
+
+// Whether the shell found no program, or none that it may run.
+bool tells_of_no_program(int exit_code) { return exit_code == 126 || exit_code == 127; }
 
 class StudyRunner {
  public:
@@ -211,22 +254,27 @@ class StudyRunner {
     }
   }
 
-  // What the command was given and left goes with the drive, unless it failed or somebody wants it.
-  void drive_external(const Drive& one, const std::function<void(double)>& progress, StudyRunResult& result) const {
-    const std::string name =
-        setup_.candidates[one.candidate].name + "-" + one.in_hall->hall + "-" + std::to_string(one.config.scenario.seed);
-    const fs::path place = fs::path("drives") / name;
+  // What the command was given and left goes with the drive, unless it failed or somebody wants it. Of failures the first one's recording
+  // is enough to find the fault by.
+  void drive_external(const Drive& one, const std::function<void(double)>& progress, Driven& driven) {
+    const fs::path place = fs::path(kDrives) / one.name(setup_.candidates);
     StagedFolder staged(request_.out / place);
     RunFolder folder(staged.path());
-    const ExternalRunResult run = run_external(
-        one.config, one.in_hall->shared->scene, [&]() -> RunFolder& { return folder; },
-        [&](double share, const std::string&) { progress(share); });
+    const auto ready = [&]() -> RunFolder& {
+      folder.write(kUnit, one.unit + "\n");
+      return folder;
+    };
+    const ExternalRunResult run =
+        run_external(one.config, one.in_hall->shared->scene, ready, [&](double share, const std::string&) { progress(share); });
+    const bool keeps = one.config.external_mapper.keep_recording;
+    driven.exit_code = run.shell.exit_code;
     if (run.score) {
-      take(*run.score, result);
+      take(*run.score, driven.record.result);
     } else {
-      result.error = failure_text(run, place);
+      driven.record.result.error = failure_text(run, place);
+      if (!keeps && recording_kept_.exchange(true)) remove_recording(folder);
     }
-    if (!run.score || one.config.external_mapper.keep_recording) {
+    if (!run.score || keeps) {
       staged.commit();
     } else {
       std::error_code stays;
@@ -234,53 +282,51 @@ class StudyRunner {
     }
   }
 
-  UnitRecord drive(const Drive& one, const std::function<void(double)>& progress) const {
-    UnitRecord record;
+  Driven drive(const Drive& one, const std::function<void(double)>& progress) {
+    Driven driven;
+    UnitRecord& record = driven.record;
     record.cpu = cpu_identity();
     record.result.values.resize(study_measures().size());
-    std::exception_ptr stopped;  // by the caller, which is no fault of the drive
-    const auto told = [&](double share) {
-      try {
-        progress(share);
-      } catch (...) {
-        stopped = std::current_exception();
-        throw;
-      }
-    };
+    CallersStop stop;
+    const auto told = [&](double share) { stop.ask([&] { progress(share); }); };
     const auto start = std::chrono::steady_clock::now();
     try {
       if (one.config.external_mapper.used()) {
-        drive_external(one, told, record.result);
+        drive_external(one, told, driven);
       } else {
         take(run_closed_loop(one.config, one.in_hall->shared->scene, {}, [&](double share, const ObjectMap&) { told(share); }).score,
              record.result);
       }
     } catch (const Error& error) {
-      if (stopped) std::rethrow_exception(stopped);
+      stop.pass_on();
       record.result.error = error.what();
     }
     record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return record;
+    return driven;
   }
 
   // As many at a time as there are threads and memory, each on one thread: what a drive cannot share among threads then costs nothing.
-  void drive_side_by_side(const std::vector<const Drive*>& drives) {
+  // `untried`: no drive of the study has gone well yet, so that a command which the shell cannot start has stopped all.
+  void drive_side_by_side(const std::vector<const Drive*>& drives, bool untried) {
     constexpr double kBytes = 1e9;  // of a drive, generously
     std::size_t jobs = static_cast<std::size_t>(request_.jobs);
     // What another mapper needs nobody knows.
     const bool external = std::any_of(drives.begin(), drives.end(), [](const Drive* one) { return one->config.external_mapper.used(); });
     if (jobs == 0) jobs = external ? 1 : std::min(static_cast<std::size_t>(thread_count()), jobs_in_memory(kBytes));
+    const bool one_command = std::all_of(drives.begin(), drives.end(), [&](const Drive* one) {
+      return one->config.external_mapper.command == drives.front()->config.external_mapper.command;
+    });
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
     std::map<std::size_t, double> shares;  // of the drives under way
     std::size_t done = 0;
-    bool stopped = false;
+    std::exception_ptr stopped;  // by whatever came first: all end by it
     const auto work = [&](std::size_t) {
       for (std::size_t i = next++; i < drives.size(); i = next++) {
         const Drive& one = *drives[i];
-        const UnitRecord record = drive(one, [&](double share) {
+        const Driven driven = drive(one, [&](double share) {
           const std::lock_guard lock(mutex);
-          if (stopped) throw Error("stopped");
+          if (stopped) std::rethrow_exception(stopped);
           try {
             check();
             shares[i] = share;
@@ -289,14 +335,18 @@ class StudyRunner {
             const auto of = static_cast<double>(drives.size());
             report({"runs", one.text(setup_.candidates), static_cast<int>(i) + 1, static_cast<int>(drives.size()), all / of});
           } catch (...) {
-            stopped = true;  // the others hear of it, too
+            stopped = std::current_exception();  // the others hear of it, too
             throw;
           }
         });
-        store_.write(one.unit, unit_text(record));
+        store_.write(one.unit, unit_text(driven.record));
         const std::lock_guard lock(mutex);
         shares.erase(i);
-        ++done;
+        if (done++ == 0 && untried && one_command && tells_of_no_program(driven.exit_code) && !stopped) {
+          stopped = std::make_exception_ptr(
+              Error(request_.file, "stopped, as all drives have the command of the first one: " + driven.record.result.error));
+        }
+        if (stopped) std::rethrow_exception(stopped);
       }
     };
     check();
@@ -327,7 +377,12 @@ class StudyRunner {
         to_do.push_back(&all[static_cast<std::size_t>(i)]);
       }
     }
-    drive_side_by_side(to_do);
+    if (!request_.merge_only) {
+      std::map<std::string, std::string> units;
+      for (const Drive& one : all) units[one.name(setup_.candidates)] = one.unit;
+      remove_other_drives(request_.out, units);
+    }
+    drive_side_by_side(to_do, std::find(done.begin(), done.end(), true) == done.end());
     times_ = "candidate,hall,seed,wall_s\n";
     for (const Drive& one : all) {
       const std::optional<std::string> text = store_.result(one.unit);
@@ -351,7 +406,8 @@ class StudyRunner {
   UnitStore store_;
   std::vector<CandidateResult> results_;  // as many as candidates
   std::set<std::string> kinds_of_cpu_;
-  std::string times_;  // timing.csv: apart from the results, which are the same whoever made them
+  std::atomic<bool> recording_kept_ = false;  // of a mapper's failure
+  std::string times_;                         // timing.csv: apart from the results, which are the same whoever made them
 };
 
 }  // namespace

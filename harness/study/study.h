@@ -53,7 +53,9 @@ struct StudySummary {
 // results.json, results.csv, runs.csv, study.md, best/, plots/ and coverage/ into OUT (with coverage alone: into OUT/screening). What units
 // were found there, made by the same program of the same scenario and configuration, is not done again. Throws Error for what is wrong with
 // the study before anything is driven; what goes wrong in a drive stands with its candidate. What another mapper leaves is put into
-// OUT/drives/CANDIDATE-HALL-SEED where it fails, and where external_mapper.keep_recording says so.
+// OUT/drives/CANDIDATE-HALL-SEED where it fails (the recording of the first failure alone), and where external_mapper.keep_recording says
+// so; what drives of another study left there is taken away. Where all have one command, and the shell cannot start it in the first drive,
+// Error.
 StudySummary run_study(const StudyRequest& request, const StudyHooks& hooks = {});
 
 }  // namespace waretwin

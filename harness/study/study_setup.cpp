@@ -7,6 +7,7 @@
 #include "core/config_value.h"
 #include "core/digest.h"
 #include "core/error.h"
+#include "core/field_values.h"
 #include "harness/gate/measures.h"
 #include "harness/run/external_run.h"
 #include "harness/study/condition.h"
@@ -96,14 +97,20 @@ void check_keys(const StudyConfig& study, const std::vector<Setting>& given) {
   }
 }
 
+// A setting's value is read as YAML, and what a factor names for a text (a command, say) is that text, whatever stands in it.
+std::string as_setting(const std::string& key, const std::string& value) {
+  RunConfig config;
+  return is_text(key, [&](Fields& f) { config.visit(f); }) ? text_as_yaml(value) : value;
+}
+
 std::vector<Setting> settings_of(const StudyConfig& study, const DesignPoint& values) {
   std::vector<Setting> settings;
   std::size_t index = 0;
   for (const auto& [name, factor] : study.vary) {
     const std::string& value = values[index++];
     if (value.empty()) continue;
-    settings.push_back({factor.key, value});
-    for (const std::string& key : factor.also) settings.push_back({key, value});
+    settings.push_back({factor.key, as_setting(factor.key, value)});
+    for (const std::string& key : factor.also) settings.push_back({key, as_setting(key, value)});
   }
   return settings;
 }

@@ -1,6 +1,5 @@
 #include "harness/suite/suite.h"
 
-#include <exception>
 #include <memory>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "harness/score/motion_text.h"
 #include "harness/score/score_json.h"
 #include "harness/suite/suite_text.h"
+#include "harness/units/callers_stop.h"
 #include "harness/units/run_unit.h"
 #include "mapper/stages.h"
 
@@ -74,6 +74,8 @@ ReadyRun make_ready(const std::string& name, const SuiteRun& run, const SuiteCon
   ready.config = load_run_config(ready.scenario, chosen_run(choice), run.config.empty() ? fs::path() : beside(file, run.config), all);
   if (ready.config.external_mapper.used()) {
     expect_none_of_ours(choice);
+    if (!run.config.empty())
+      throw Error("config " + run.config + ": with another mapper (external_mapper.command) expected none; `set` changes single keys");
     check_external(ready.config);
     expect_no_marks_of_ours(run.pass);
   } else if (!ready.config.truth_stages.detector) {
@@ -135,9 +137,10 @@ void drive_ours(const ReadyRun& run, const std::shared_ptr<const Scene>& scene, 
   judge(run, result.score, suite.tolerances, out, outcome);
 }
 
-// What the command leaves is kept, also where it fails: the recording and its words are what the failure is found by.
+// What the command leaves is kept, also where it fails: its words, and of the first failure (`recording_kept` is not yet set) the
+// recording, are what the failure is found by.
 void drive_external(const ReadyRun& run, const std::shared_ptr<const Scene>& scene, const SuiteConfig& suite, const fs::path& out,
-                    const std::function<void(double)>& progress, SuiteOutcome& outcome) {
+                    const std::function<void(double)>& progress, bool& recording_kept, SuiteOutcome& outcome) {
   StagedFolder staged(out / run.name);
   RunFolder folder(staged.path());
   const auto ready = [&]() -> RunFolder& {
@@ -146,6 +149,10 @@ void drive_external(const ReadyRun& run, const std::shared_ptr<const Scene>& sce
   };
   const ExternalRunResult result = run_external(run.config, scene, ready, [&](double share, const std::string&) { progress(share); });
   write_external(folder, run.config, result);
+  if (!result.score && !run.config.external_mapper.keep_recording) {
+    if (recording_kept) remove_recording(folder);
+    recording_kept = true;
+  }
   staged.commit();
   if (!result.score) {
     outcome.problems = {failure_text(result, run.name)};
@@ -156,24 +163,22 @@ void drive_external(const ReadyRun& run, const std::shared_ptr<const Scene>& sce
   if (!trajectory.empty()) outcome.problems.push_back(trajectory);
 }
 
-SuiteOutcome drive(const ReadyRun& run, const SuiteConfig& suite, const fs::path& out, const std::function<void(double)>& progress) {
+SuiteOutcome drive(const ReadyRun& run, const SuiteConfig& suite, const fs::path& out, bool& recording_kept,
+                   const std::function<void(double)>& progress) {
   SuiteOutcome outcome;
   outcome.run = run.name;
   outcome.cpu = cpu_identity();
-  std::exception_ptr stopped;  // by the caller, which is no fault of the run
-  const auto told = [&](double share) {
-    try {
-      progress(share);
-    } catch (...) {
-      stopped = std::current_exception();
-      throw;
-    }
-  };
+  CallersStop stop;
+  const auto told = [&](double share) { stop.ask([&] { progress(share); }); };
   try {
     const auto scene = std::make_shared<const Scene>(build_scene(run.config.scenario));
-    (run.config.external_mapper.used() ? drive_external : drive_ours)(run, scene, suite, out, told, outcome);
+    if (run.config.external_mapper.used()) {
+      drive_external(run, scene, suite, out, told, recording_kept, outcome);
+    } else {
+      drive_ours(run, scene, suite, out, told, outcome);
+    }
   } catch (const Error& error) {
-    if (stopped) std::rethrow_exception(stopped);
+    stop.pass_on();
     outcome.error = error.what();
   }
   return outcome;
@@ -212,6 +217,7 @@ SuiteSummary run_suite(const SuiteRequest& request, const SuiteHooks& hooks) {
   SuiteSummary summary;
   summary.name = suite.name;
   const int count = static_cast<int>(runs.size());
+  bool recording_kept = false;  // of a mapper's failure
   SuiteProgress now{"", 0, request.shard.size(count), 0.0};
   for (int i = 0; i < count; ++i) {
     if (request.merge_only || !request.shard.has(i)) continue;
@@ -225,7 +231,7 @@ SuiteSummary run_suite(const SuiteRequest& request, const SuiteHooks& hooks) {
       if (mapper.used() && mapper.depends.empty()) ++summary.found_unwatched;
       continue;
     }
-    const SuiteOutcome outcome = drive(run, suite, out, [&](double share) {
+    const SuiteOutcome outcome = drive(run, suite, out, recording_kept, [&](double share) {
       check();
       now.share = share;
       if (hooks.progress) hooks.progress(now);

@@ -1,11 +1,9 @@
 #include "harness/units/run_unit.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <vector>
 
-#include "core/error.h"
 #include "core/files.h"
+#include "harness/units/dependencies.h"
 #include "harness/units/units.h"
 #include "mapper/detect/model_files.h"
 #include "mapper/detect/shipped_models.h"
@@ -15,33 +13,6 @@ namespace waretwin {
 namespace fs = std::filesystem;
 
 namespace {
-
-// Names within a folder count, for they are what the command knows its files by.
-void add_folder(const fs::path& folder, Digest& digest) {
-  std::vector<fs::path> files;
-  try {
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-      if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
-    }
-  } catch (const fs::filesystem_error& error) {
-    throw Error(folder, "cannot be read: " + error.code().message());
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
-    digest.add(file.string());
-    digest.add(read_file(folder / file));
-  }
-}
-
-void add_dependencies(const ExternalMapper& mapper, Digest& digest) {
-  for (const fs::path file : mapper.depends) {
-    if (fs::is_directory(file)) {
-      add_folder(file, digest);
-    } else {
-      digest.add(read_file(file));
-    }
-  }
-}
 
 void add_detector(const RunConfig& config, Digest& digest) {
   if (config.truth_stages.detector || config.external_mapper.used()) return;
@@ -64,11 +35,13 @@ void add_run(const RunConfig& config, const std::string& scene, Digest& digest) 
   without_names.resume.clear();
   without_names.extrinsics.clear();
   without_names.external_mapper.depends.clear();
+  // What a suite says of another mapper for all its runs says nothing of one that is mapped by ours.
+  if (!config.external_mapper.used()) without_names.external_mapper = {};
   without_names.scenario.robot.model.clear();  // what is in it stands in the scene
   digest.add(write_config([&](Fields& f) { without_names.visit(f); }));
   digest.add(scene);
   add_detector(config, digest);
-  add_dependencies(config.external_mapper, digest);
+  if (config.external_mapper.used()) add_dependencies(config.external_mapper.depends, digest);
   if (!config.resume.empty()) digest.add(read_file(config.resume));
   if (!config.extrinsics.empty()) digest.add(read_file(config.extrinsics));
 }

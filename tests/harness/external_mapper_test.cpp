@@ -57,34 +57,52 @@ class OtherMapper : public ::testing::Test {
     return run_suite({path("suite.yaml"), {}, path(out), shard, false}, hooks);
   }
 
+  StudyRequest study(const std::string& mapper_of_all, const std::string& vary, const std::string& out) const {
+    write_file(path("study.yaml"), "study:\n  halls: {room: {scenario: yard.yaml}}\n  run: {" + kQuick + mapper_of_all +
+                                       "}\n  vary: {it: {" + vary +
+                                       "}}\n"
+                                       "  coverage: {floor_spacing_m: 1, points_per_object: 20, place_spacing_m: 4, rate_hz: 0.05}\n");
+    StudyRequest request;
+    request.file = path("study.yaml");
+    request.out = path(out);
+    return request;
+  }
+  static constexpr const char* kHeight = "key: sensors.cameras.camera.mount.z_m, values: [1.2]";
+
   test::TemporaryFolder folder_;
 };
 
 TEST_F(OtherMapper, IsJudgedInASuiteAndItsFailuresAreItsRunsAlone) {
   const std::string runs =
-      run_of("ended", mapper("echo {recording} {out}; echo no model >&2; exit 7")) +
+      run_of("ended", mapper("echo {recording} {out}; yes | head -c 100000 >&2; echo no model >&2; exit 7")) +
       run_of("good", mapper(good(), ", keep_recording: true") + ", pass: {recall: 1, mean_iou3d: 0.999}") +
+      run_of("loop", mapper("echo {recording}; ln -s cuboids.json {out}/cuboids.json")) +
+      run_of("pipe", mapper("echo {recording}; mkfifo {out}/cuboids.json")) +
       run_of("slow", mapper("echo {recording} {out}; sleep 60", ", timeout_s: 0.1")) +
       run_of("unread", mapper("echo {recording}; echo '{}' > {out}/cuboids.json")) +
       run_of("wrong", mapper("echo {recording}; echo '{\\\"objects\\\": []}' > {out}/cuboids.json") + ", pass: {recall: 1}");
   const SuiteSummary summary = suite(runs, "out");
-  ASSERT_EQ(summary.outcomes.size(), 5u);
+  ASSERT_EQ(summary.outcomes.size(), 7u);
   const auto problem = [&](std::size_t i) { return summary.outcomes[i].problems.empty() ? "" : summary.outcomes[i].problems.front(); };
   EXPECT_EQ(problem(0), "the mapper ended with exit code 7, see ended/mapper/stderr.log: no model");
   EXPECT_TRUE(summary.outcomes[1].passed()) << problem(1) << summary.outcomes[1].error;
-  EXPECT_EQ(problem(2), "the mapper was ended after 0.1 s (--mapper-timeout), see slow/mapper/stderr.log");
-  EXPECT_EQ(problem(3), "unread/mapper/out/cuboids.json: key 'objects' is missing");
-  EXPECT_EQ(problem(4), "recall 0, expected at least 1");
+  EXPECT_EQ(problem(2), "loop/mapper/out/cuboids.json: cannot be looked at: Too many levels of symbolic links");
+  EXPECT_EQ(problem(3), "pipe/mapper/out/cuboids.json: is a folder, a pipe or the like; expected a file");
+  EXPECT_EQ(problem(4), "the mapper was ended after 0.1 s (--mapper-timeout), see slow/mapper/stderr.log");
+  EXPECT_EQ(problem(5), "unread/mapper/out/cuboids.json: key 'objects' is missing");
+  EXPECT_EQ(problem(6), "recall 0, expected at least 1");
   for (const SuiteOutcome& outcome : summary.outcomes) EXPECT_EQ(outcome.error, "");
 
   for (const char* name :
        {"score.json", "table6.md", "report.html", "config.yaml", "truth.json", "mapper/stdout.log", "mapper/recording/rgb.txt"})
     EXPECT_TRUE(fs::exists(path("out/good") / name)) << name;
-  EXPECT_EQ(read_file(path("out/ended/mapper/stderr.log")), "no model\n");
+  EXPECT_EQ(read_file(path("out/ended/mapper/stderr.log")).size(), 100009u);
   EXPECT_TRUE(fs::exists(path("out/ended/mapper/recording"))) << "kept, to try again on";
+  EXPECT_FALSE(fs::exists(path("out/slow/mapper/recording"))) << "only of the first that fails";
+  EXPECT_TRUE(fs::exists(path("out/slow/mapper/stderr.log")));
   EXPECT_FALSE(fs::exists(path("out/wrong/mapper/recording"))) << "taken away, as nobody asked for it";
   EXPECT_FALSE(fs::exists(path("out/ended/score.json")));
-  EXPECT_NE(read_file(path("out/junit.xml")).find(R"(tests="5" failures="4" errors="0")"), std::string::npos);
+  EXPECT_NE(read_file(path("out/junit.xml")).find(R"(tests="7" failures="6" errors="0")"), std::string::npos);
   EXPECT_NE(read_file(path("out/suite.md")).find("- slow: the mapper was ended"), std::string::npos);
 
   // What has failed is tried again; what was judged, well or not, is not.
@@ -131,25 +149,25 @@ TEST_F(OtherMapper, WhatCannotBeIsSaidBeforeTheFirstDrive) {
   EXPECT_ERROR(refused(mapper("my_mapper {recording}"))(), "suite.yaml", "run 'a'", "does not say {out}");
   EXPECT_ERROR(refused(mapper(call + " {boxes}"))(), "run 'a'", "truth_stages.detector");
   EXPECT_ERROR(refused(mapper(call, ", depends: [none.bin]"))(), "run 'a'", "external_mapper.depends", "'none.bin'");
+  EXPECT_ERROR(refused(mapper(call, ", depends: [/dev/null]"))(), "external_mapper.depends", "'/dev/null' is neither");
   EXPECT_ERROR(refused(mapper(call, ", format: mp4"))(), "suite.yaml", "format", "tum");
   EXPECT_ERROR(refused(mapper(call) + ", profile: paper")(), "run 'a'", "paper", "another mapper");
   EXPECT_ERROR(refused(mapper(call) + ", poses: laser")(), "run 'a'", "laser", "truth");
   EXPECT_ERROR(refused(mapper(call) + ", pass: {surface_found: 0.5}")(), "run 'a'", "pass.surface_found");
+  // --mapper for all runs, of which one has an earlier run's configuration.
+  write_file(path("some.yaml"), "simulation: {max_frames: 1}\n");
+  write_file(path("suite.yaml"), "suite: {runs: {a: {scenario: yard.yaml, config: some.yaml}}}\n");
+  EXPECT_ERROR(run_suite({path("suite.yaml"), {{"external_mapper.command", "'" + call + "'"}}, path("out"), {}, false}), "run 'a'",
+               "config some.yaml", "another mapper");
   EXPECT_FALSE(fs::exists(path("out/a")));
 }
 
 TEST_F(OtherMapper, HasAStudyOfItsOwn) {
-  const auto study = [&](const std::string& command, const std::string& out, const std::string& more = "") {
-    write_file(path("study.yaml"), "study:\n  halls: {room: {scenario: yard.yaml}}\n  run: {" + kQuick + mapper(command, more) +
-                                       "}\n  vary: {height: {key: sensors.cameras.camera.mount.z_m, values: [1.2]}}\n"
-                                       "  coverage: {floor_spacing_m: 1, points_per_object: 20, place_spacing_m: 4, rate_hz: 0.05}\n");
-    StudyRequest request;
-    request.file = path("study.yaml");
-    request.out = path(out);
-    return request;
+  const auto heights = [&](const std::string& command, const std::string& out, const std::string& more = "") {
+    return study(mapper(command, more), kHeight, out);
   };
   const auto value = [](const CandidateResult& candidate, const char* name) { return candidate.runs.at(0).values[*study_measure(name)]; };
-  const StudySummary summary = run_study(study(good(), "out"));
+  const StudySummary summary = run_study(heights(good(), "out"));
   ASSERT_TRUE(summary.results && summary.results->best);
   ASSERT_EQ(summary.results->candidates.size(), 2u);
   for (const CandidateResult& candidate : summary.results->candidates) {
@@ -161,12 +179,12 @@ TEST_F(OtherMapper, HasAStudyOfItsOwn) {
   }
   EXPECT_TRUE(fs::is_empty(path("out/drives")));
   EXPECT_NE(read_file(path("out/best/room.yaml")).find("truth.json"), std::string::npos) << "its command goes with the best";
-  const StudySummary again = run_study(study(good(), "out"));
+  const StudySummary again = run_study(heights(good(), "out"));
   EXPECT_EQ(again.found, 2);
   EXPECT_EQ(again.found_unwatched, 2);
 
   // One arm fails: told with it, and tried again. Side by side they are the same.
-  StudyRequest broken = study("case {out} in *c001*) echo too low >&2; exit 4;; esac; " + good(), "broken", ", keep_recording: true");
+  StudyRequest broken = heights("case {out} in *c001*) echo too low >&2; exit 4;; esac; " + good(), "broken", ", keep_recording: true");
   broken.jobs = 2;
   const StudySummary failed = run_study(broken);
   EXPECT_EQ(failed.results->candidates[0].runs.at(0).error, "");
@@ -176,46 +194,92 @@ TEST_F(OtherMapper, HasAStudyOfItsOwn) {
   EXPECT_TRUE(fs::exists(path("broken/drives/c000-room-1/mapper/recording/rgb.txt")));
   EXPECT_EQ(read_file(path("broken/drives/c001-room-1/mapper/stderr.log")), "too low\n");
 
-  StudyRequest wrong = study("my_mapper {recording}", "wrong");
+  StudyRequest wrong = heights("my_mapper {recording}", "wrong");
   EXPECT_ERROR(run_study(wrong), "study.yaml", "candidate c000", "does not say {out}");
-  wrong = study(good(), "wrong");
+  wrong = heights(good(), "wrong");
   wrong.settings = {{"study.judge.best_by", "surface_found"}};
   EXPECT_ERROR(run_study(wrong), "judge.best_by", "surface_found");
   EXPECT_FALSE(fs::exists(path("wrong/units")));
 }
 
-TEST(OtherMappersUnit, IsAnotherOneWithEachThingItDependsOn) {
-  const test::TemporaryFolder folder;
-  const fs::path file = folder.path() / "weights.bin", set = folder.path() / "set";
+TEST_F(OtherMapper, OfAStudyMayBeAFactorAndKeepsLittleOfFailures) {
+  const auto driven = [&](const std::string& commands) {
+    return run_study(study(mapper(good()), "key: external_mapper.command, values: [" + commands + "]", "out"));
+  };
+  // What YAML would take for a quotation, a map and a remark.
+  const std::string failing = R"("echo" {recording} {out}; echo "a: b #c" >&2; exit 3)";
+  const StudySummary first = driven("'" + failing + "', 'echo {recording} {out}; exit 4'");
+  ASSERT_EQ(first.results->candidates.size(), 3u);
+  EXPECT_EQ(first.results->candidates[0].runs.at(0).error, "");
+  EXPECT_EQ(first.results->candidates[1].values.at(0), failing);
+  EXPECT_EQ(first.results->candidates[1].runs.at(0).error,
+            "the mapper ended with exit code 3, see drives/c001-room-1/mapper/stderr.log: a: b #c");
+  EXPECT_TRUE(fs::exists(path("out/drives/c001-room-1/mapper/recording")));
+  EXPECT_FALSE(fs::exists(path("out/drives/c002-room-1/mapper/recording"))) << "only of the first that fails";
+  EXPECT_TRUE(fs::exists(path("out/drives/c002-room-1/mapper/stderr.log")));
+  // Another study in the same place takes away what is not its own, and nothing that no study made.
+  make_folder(path("out/drives/notes"));
+  driven("'" + failing + "'");
+  EXPECT_TRUE(fs::exists(path("out/drives/c001-room-1")));
+  EXPECT_FALSE(fs::exists(path("out/drives/c002-room-1")));
+  EXPECT_TRUE(fs::exists(path("out/drives/notes")));
+}
+
+TEST_F(OtherMapper, ThatCannotBeStartedStopsTheStudy) {
+  EXPECT_ERROR(run_study(study(mapper("no_such_mapper {recording} {out}"), kHeight, "out")), "study.yaml", "stopped", "exit code 127",
+               "drives/c000-room-1/mapper/stderr.log", "no_such_mapper");
+  EXPECT_TRUE(fs::exists(path("out/drives/c000-room-1/mapper/stderr.log")));
+  EXPECT_FALSE(fs::exists(path("out/drives/c001-room-1")));
+}
+
+TEST_F(OtherMapper, SideBySideEndsWithTheCallersWords) {
+  const fs::path begun = path("begun");
+  StudyRequest request = study(mapper("echo {recording} {out} >>'" + begun.string() + "'; exec sleep 600"), kHeight, "out");
+  request.jobs = 2;
+  StudyHooks hooks;
+  hooks.check = [&] {
+    const std::string lines = fs::exists(begun) ? read_file(begun) : "";
+    if (std::count(lines.begin(), lines.end(), '\n') == 2) throw Error("ended by the user");
+  };
+  EXPECT_ERROR(run_study(request, hooks), "ended by the user");
+}
+
+class OtherMappersUnit : public ::testing::Test {
+ protected:
+  OtherMappersUnit() { config_.external_mapper.command = "my_mapper {recording} {out}"; }
+  std::string unit() const {
+    Digest digest;
+    add_run(config_, "hall", digest);
+    return digest.hex();
+  }
+  test::TemporaryFolder folder_;
+  RunConfig config_;
+};
+
+TEST_F(OtherMappersUnit, IsAnotherOneWithEachThingItDependsOn) {
+  const fs::path file = folder_.path() / "weights.bin", set = folder_.path() / "set";
   write_file(file, "a");
   make_folder(set / "deep");
   write_file(set / "deep/part", "a");
-  RunConfig config;
-  config.external_mapper.command = "my_mapper {recording} {out}";
-  const auto unit = [&config] {
-    Digest digest;
-    add_run(config, "hall", digest);
-    return digest.hex();
-  };
   std::vector<std::string> units = {unit()};
   const auto expect_new = [&](const char* what) {
     EXPECT_EQ(std::count(units.begin(), units.end(), unit()), 0) << what;
     EXPECT_EQ(unit(), unit());
     units.push_back(unit());
   };
-  config.external_mapper.command += " --fast";
+  config_.external_mapper.command += " --fast";
   expect_new("command");
-  config.external_mapper.format = "scenenn";
+  config_.external_mapper.format = "scenenn";
   expect_new("format");
-  config.external_mapper.timeout_s = 60;
+  config_.external_mapper.timeout_s = 60;
   expect_new("timeout");
-  config.external_mapper.keep_recording = true;
+  config_.external_mapper.keep_recording = true;
   expect_new("keep_recording");
-  config.external_mapper.depends = {file.string()};
+  config_.external_mapper.depends = {file.string()};
   expect_new("a file");
   write_file(file, "b");
   expect_new("its bytes");
-  config.external_mapper.depends = {file.string(), set.string()};
+  config_.external_mapper.depends = {file.string(), set.string()};
   expect_new("a folder");
   write_file(set / "deep/part", "b");
   expect_new("what is in it");
@@ -223,9 +287,41 @@ TEST(OtherMappersUnit, IsAnotherOneWithEachThingItDependsOn) {
   expect_new("a name in it");
   // Where they lie does not count.
   const std::string before = unit();
-  fs::rename(file, folder.path() / "moved.bin");
-  config.external_mapper.depends[0] = (folder.path() / "moved.bin").string();
+  fs::rename(file, folder_.path() / "moved.bin");
+  config_.external_mapper.depends[0] = (folder_.path() / "moved.bin").string();
   EXPECT_EQ(unit(), before);
+}
+
+TEST_F(OtherMappersUnit, FollowsLinksBelowAFolderThatMayLeadInACircle) {
+  const fs::path set = folder_.path() / "set", store = folder_.path() / "store";
+  make_folder(set / "deep");
+  make_folder(store / "v1");
+  make_folder(store / "v2");
+  write_file(store / "v1/weights", "a");
+  write_file(store / "v2/weights", "b");
+  fs::create_directory_symlink(store / "v1", set / "model");
+  fs::create_directory_symlink(set, set / "deep/up");
+  fs::create_symlink("nowhere", set / "broken");
+  config_.external_mapper.depends = {set.string()};
+  const std::string before = unit();
+  write_file(store / "v1/weights", "c");
+  const std::string other_bytes = unit();
+  EXPECT_NE(other_bytes, before);
+  fs::remove(set / "model");
+  fs::create_directory_symlink(store / "v2", set / "model");
+  EXPECT_NE(unit(), other_bytes);
+  write_file(store / "v2/weights", "a");
+  EXPECT_EQ(unit(), before) << "where it leads does not count";
+}
+
+// A suite's `external_mapper` is also that of a run with `command: ""`.
+TEST_F(OtherMappersUnit, OfOurOwnMapperCountsNothingOfAnother) {
+  config_.external_mapper = {};
+  const std::string ours = unit();
+  config_.external_mapper.timeout_s = 60;
+  config_.external_mapper.format = "scenenn";
+  config_.external_mapper.depends = {(folder_.path() / "none.bin").string()};
+  EXPECT_EQ(unit(), ours);
 }
 
 }  // namespace

@@ -72,6 +72,18 @@ TEST_F(Shell, EndsItWhenTheCallerGivesUp) {
                "stopped");
 }
 
+// The shell of a pipeline dies of the signal at once; the mapper in it has its time all the same.
+TEST_F(Shell, WhatOutlivesTheShellMaySaveItsWork) {
+  const std::string ready = shell_word((folder_.path() / "ready").string()), saved = shell_word((folder_.path() / "saved").string());
+  const std::string mapper =
+      "(trap 'sleep 0.3; echo all >" + saved + "; exit' TERM; echo >" + ready + "; while :; do sleep 0.02; done) | cat";
+  const auto stop = [&](double) {
+    if (std::filesystem::exists(folder_.path() / "ready")) throw Error("stopped");
+  };
+  EXPECT_ERROR(run(mapper, 0.0, stop), "stopped");
+  EXPECT_EQ(text("saved"), "all\n");
+}
+
 TEST_F(Shell, WordsComeThroughWhole) {
   const std::string word = "it's \"a\" $path; `x` \\ * end";
   EXPECT_EQ(run("printf %s " + shell_word(word)).exit_code, 0);
