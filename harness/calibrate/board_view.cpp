@@ -15,8 +15,8 @@ double beside(double range_m) { return 0.01 + 0.0075 * range_m; }
 }  // namespace
 
 void GuessGate::visit(Fields& f) {
-  f("distance_m", distance_m, "the sensors' poses that are known beforehand may be this far off", {.min = 0, .max = 5});
-  f("angle_deg", angle_deg, "and turned by this much", {.min = 0, .max = 45});
+  f("distance_m", distance_m, "how far around the known place a board's line is looked for first", {.min = 0, .max = 5});
+  f("angle_deg", angle_deg, "how far turned from the known direction", {.min = 0, .max = 45});
 }
 
 std::optional<BoardView> view_board(const std::vector<Eigen::Vector2d>& corners, const Intrinsics& intrinsics, const CheckerBoard& board) {

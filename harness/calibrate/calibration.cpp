@@ -76,9 +76,14 @@ void pick_by_guess(Views& seen, const CalibrateConfig& config, const Pose& X_CL)
 
 void pick_by_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_CL, double bias_m, double gate_m) {
   for (std::size_t i = 0; i < seen.views.size(); ++i) {
-    if (!seen.unused[i].empty()) continue;
+    // A pose whose line was not found without an estimate comes back where beams meet its board now.
+    if (!seen.unused[i].empty() && seen.unused[i] != kNoLine) continue;
     seen.views[i].points = points_by_estimate(seen.still[i], seen.views[i], config.board, X_CL, bias_m, gate_m);
-    if (seen.views[i].points.empty()) drop(seen, i, "the laser's beams miss the board");
+    if (!seen.views[i].points.empty()) {
+      seen.unused[i].clear();
+    } else if (seen.unused[i].empty()) {
+      drop(seen, i, "the laser's beams miss the board");
+    }
   }
 }
 
@@ -133,22 +138,28 @@ Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC
     used.push_back(i);
     poses.push_back({seen.views[i], lines[i]});
   }
+  // Measured over the poses of scenes/agiprobot/calibration.yaml: eight always find each other, of six half do.
+  constexpr std::size_t kEnough = 8;
+  const bool enough = used.size() >= kEnough;
   Views guessed = seen;
+  LineSearch by_guess;
   int told = 0;  // poses whose line the guess told
-  LineSearch best;
   std::optional<Error> refusal;
   try {
     pick_by_guess(guessed, config, X_BC_given.inverse() * X_BL);
-    best = agreeing_lines(poses, config.board, robust_closed_form(guessed, config, X_BC_given));
+    by_guess = agreeing_lines(poses, config.board, robust_closed_form(guessed, config, X_BC_given));
     told = static_cast<int>(std::count(guessed.unused.begin(), guessed.unused.end(), ""));
   } catch (const Error& error) {
     refusal = error;
   }
-  if (best.agreed < static_cast<int>(used.size())) {
+  LineSearch best = by_guess;
+  if (by_guess.agreed < static_cast<int>(used.size())) {
     const std::optional<LineSearch> found = search_lines(poses, config.board);
     if (found && found->agreed > best.agreed) best = *found;
   }
-  if (best.agreed > told) {
+  // The closed form of few poses is so rough that lines which the guess told rightly may miss their boards; of more it is not.
+  const bool guess_holds = !enough || by_guess.agreed >= config.least_poses;
+  if (best.agreed > told || (!guess_holds && best.agreed >= config.least_poses)) {
     for (std::size_t k = 0; k < used.size(); ++k) {
       if (best.line[k] < 0) {
         drop(seen, used[k], kNoLine);
@@ -158,21 +169,18 @@ Pose first_estimate(Views& seen, const CalibrateConfig& config, const Pose& X_BC
     }
     return robust_closed_form(seen, config, X_BC_given);
   }
-  // Measured over the poses of scenes/agiprobot/calibration.yaml: eight always find each other, of six half do.
-  constexpr std::size_t kEnough = 8;
-  if (refusal && used.size() < kEnough) {
+  if (refusal && !enough) {
     throw Error(std::string(refusal->what()) + "; or the camera's place known within " +
                 std::to_string(config.guess.distance_m).substr(0, 4) + " m and " + std::to_string(config.guess.angle_deg).substr(0, 4) +
                 " deg (calibrate.guess), or eight poses");
   }
   if (refusal) throw Error(*refusal);
-  // The closed form of few poses is so rough that lines which the guess told rightly may miss their boards.
-  if (used.size() >= kEnough && best.agreed < config.least_poses) {
+  if (!guess_holds) {
     throw Error("the lines in the scans lie on the boards of " + std::to_string(best.agreed) + " of " + std::to_string(used.size()) +
                 " poses only; expected at least " + std::to_string(config.least_poses) + " on which one place of the camera agrees");
   }
   seen = std::move(guessed);
-  return best.X_CL;
+  return by_guess.X_CL;
 }
 
 double beam_rms(const BoardView& view, const Pose& X_CO, const Pose& X_CL, double bias_m) {
@@ -192,7 +200,7 @@ void CalibrateConfig::visit(Fields& f) {
   f("laser", laser, "which one; empty: the only one");
   f.group("board", board, "the checkerboard");
   f.group("still", still, "when board and vehicle stand still");
-  f.group("guess", guess, "how far off the poses that are known beforehand are looked for; without success the search goes without them");
+  f.group("guess", guess, "where the lines of boards are looked for first; without success the search goes without what is known");
   f.group("refine", refine, "the refinement");
   f.group("lens", lens, "the camera's intrinsics");
   f("least_poses", least_poses, "fewer are refused", {.min = 5, .max = 1e6});

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 #include "harness/gate/measures.h"
 #include "harness/run/external_mapper.h"
 #include "harness/score/cuboid_file.h"
-#include "harness/score/json_text.h"
 #include "harness/score/score_json.h"
 
 namespace waretwin {
@@ -49,7 +50,7 @@ JudgedObject object_of(const Json& row, const std::filesystem::path& file) {
 bool JudgedScore::of_another_mapper() const { return profile == kExternalProfile; }
 
 JudgedScore judged_score(const std::string& text, const std::filesystem::path& file) {
-  const Json json = parse_json(file, text, "a score.json");
+  const Json json = parse_json<Json>(file, text, "a score.json");
   if (!json.is_object() || !json.contains("schema")) throw Error(file, "has no key 'schema'; expected a score.json");
   if (json["schema"] != kScoreSchema)
     throw Error(file, "schema is " + brief(json["schema"]) + "; expected " + std::to_string(kScoreSchema));

@@ -10,9 +10,9 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 #include "harness/labelled/label_text.h"
 #include "harness/labelled/text_sets.h"
-#include "harness/score/json_text.h"
 
 namespace waretwin {
 
@@ -81,7 +81,7 @@ Json parse(const fs::path& file) {
     if (depth > kDeepest) throw Error(file, "is nested more than " + std::to_string(kDeepest) + " levels deep");
     return !(event == Json::parse_event_t::key && parsed == "segmentation");
   };
-  return parse_json(file, read_file(file), "a labelled set as COCO writes it", wanted);
+  return parse_json<Json>(file, read_file(file), "a labelled set as COCO writes it", wanted);
 }
 
 // Where pictures of a JSON file may lie, best first.

@@ -77,6 +77,9 @@ int calibrate_from(const CalibrateOptions& options) {
     config.calibrate = chosen(options);
     if (options.common.seed) config.scenario.seed = *options.common.seed;
     apply_settings(settings, [&](Fields& f) { config.visit(f); });
+    if (config.scenario.motion.held.empty()) {
+      throw Error(source, "holds up no board (motion.held); expected a scenario of its own, as scenes/agiprobot/calibration.yaml");
+    }
     SimulatedStream stream(config.scenario, std::make_shared<const Scene>(build_scene(config.scenario)), config.simulation);
     calibration = watched(stream, config.calibrate, options.common.quiet);
     truth = true_calibration(config.scenario, calibration.camera, calibration.laser);

@@ -75,10 +75,17 @@ int run(const StudyOptions& options) {
   if (summary.kinds_of_cpu > 1)
     spdlog::info("driven on {} kinds of CPU, whose kernels differ in last bits: differences between mounts may hold as much",
                  summary.kinds_of_cpu);
+  bool any_driven = false, any_failed = false;
+  for (const CandidateResult& candidate : summary.results->candidates) {
+    for (const StudyRunResult& drive : candidate.runs) {
+      (drive.error.empty() ? any_driven : any_failed) = true;
+      if (!drive.error.empty()) spdlog::error("{} in {}, seed {}: {}", candidate.name, drive.hall, drive.seed, drive.error);
+    }
+  }
   std::cout << "best: " << summary.verdict << "\nresults in " << summary.folder.string()
             << " (study.md, results.csv, results.json, plots/, coverage/";
   std::cout << (summary.results->best ? ", best/)\n" : ")\n");
-  return 0;
+  return any_failed && !any_driven ? 1 : 0;
 }
 
 }  // namespace

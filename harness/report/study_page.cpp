@@ -7,10 +7,10 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 #include "core/version.h"
 #include "harness/pictures/picture_file.h"
 #include "harness/report/page_json.h"
-#include "harness/score/json_text.h"
 
 namespace waretwin {
 

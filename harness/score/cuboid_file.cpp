@@ -1,12 +1,13 @@
 #include "harness/score/cuboid_file.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 #include "harness/score/farthest.h"
-#include "harness/score/json_text.h"
 
 namespace waretwin {
 
@@ -81,7 +82,7 @@ ListedObject read_object(const Json& json, const std::string& frame, const Place
 
 std::vector<ListedObject> read_object_list(const std::filesystem::path& file) {
   Place place{file, ""};
-  const Json json = parse_json(file, read_file(file), "an object with a list 'objects'");
+  const Json json = parse_json<Json>(file, read_file(file), "an object with a list 'objects'");
   const Json& objects = need(json, "objects", place);
   if (!objects.is_array()) place.fail("'objects' is not a list");
   std::string frame = "world";

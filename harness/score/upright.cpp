@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 
 namespace waretwin {
 
@@ -12,14 +13,19 @@ Pose upright_from_recording(const std::filesystem::path& folder) {
   std::error_code error;
   Pose X_RU = Pose::Identity();
   if (!std::filesystem::is_regular_file(file, error)) return X_RU;
-  try {
-    const auto json = nlohmann::json::parse(read_file(file));
-    for (int row = 0; row < 4; ++row) {
-      const auto& values = json.at("X_recording_upright").at(static_cast<std::size_t>(row));
-      for (int column = 0; column < 4; ++column) X_RU.matrix()(row, column) = values.at(static_cast<std::size_t>(column)).get<double>();
+  const auto json = parse_json<nlohmann::json>(file, read_file(file), "X_recording_upright, a pose");
+  const auto refuse = [&] { throw Error(file, "holds no pose; expected X_recording_upright, four rows of four numbers"); };
+  if (!json.is_object() || !json.contains("X_recording_upright")) refuse();
+  const auto& rows = json["X_recording_upright"];
+  if (!rows.is_array() || rows.size() != 4) refuse();
+  for (int row = 0; row < 4; ++row) {
+    const auto& values = rows[static_cast<std::size_t>(row)];
+    if (!values.is_array() || values.size() != 4) refuse();
+    for (int column = 0; column < 4; ++column) {
+      const auto& value = values[static_cast<std::size_t>(column)];
+      if (!value.is_number()) refuse();
+      X_RU.matrix()(row, column) = value.get<double>();
     }
-  } catch (const nlohmann::json::exception& problem) {
-    throw Error(file, "is no pose (" + std::string(problem.what()) + ")");
   }
   return orthonormalised(X_RU).inverse();
 }

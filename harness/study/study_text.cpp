@@ -246,6 +246,17 @@ std::string runs_csv(const StudyConfig& study, const StudyResults& results) {
   return csv;
 }
 
+std::string failed_drives_text(const StudyResults& results) {
+  std::string text;
+  for (const CandidateResult& candidate : results.candidates) {
+    for (const StudyRunResult& run : candidate.runs) {
+      if (!run.error.empty())
+        text += "- " + candidate.name + ", " + run.hall + ", seed " + std::to_string(run.seed) + ": " + run.error + "\n";
+    }
+  }
+  return text.empty() ? "" : "**Not driven to the end:**\n\n" + text + "\n";
+}
+
 std::string study_markdown(const StudySetup& setup, const StudyResults& results) {
   const StudyConfig& study = setup.study;
   std::string text = "# " + study.name + "\n\n";
@@ -257,7 +268,7 @@ std::string study_markdown(const StudySetup& setup, const StudyResults& results)
           (study.halls.size() > 1 ? "s" : "") + ", " + std::to_string(study.seeds.size()) + " seed" + (study.seeds.size() > 1 ? "s" : "") +
           "; " + std::to_string(count(CandidateState::kMapped)) + " mapped, " + std::to_string(count(CandidateState::kScreenedOut)) +
           " looked at by coverage alone, " + std::to_string(count(CandidateState::kRefused)) + " refused by constraints.\n\n";
-  text += "**Best**: " + verdict_text(study, results) + ".\n\n";
+  text += "**Best**: " + verdict_text(study, results) + ".\n\n" + failed_drives_text(results);
   if (results.best) {
     text += "`best/` has its configuration for each hall: `waretwin run SCENARIO --out OUT --config best/HALL.yaml` drives it.\n\n";
     const CandidateResult& best = results.candidates[*results.best];

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/json_text.h"
 #include "mapper/detect/model_files.h"
 #include "sensors/recordings/text_formats.h"
 
@@ -89,18 +90,17 @@ Detection read_detection(const std::filesystem::path& file, const json& entry, c
     }
     detection.score = score->get<float>();
   }
-  if (const auto mask = entry.find("mask"); mask != entry.end()) detection.mask = read_mask(file, *mask, where + ".mask");
+  for (const char* other : {"masks", "segmentation", "rle"}) {
+    if (entry.contains(other)) throw Error(file, where + " has \"" + other + "\"; expected a mask under \"mask\"");
+  }
+  if (const auto mask = entry.find("mask"); mask != entry.end() && !mask->is_null())
+    detection.mask = read_mask(file, *mask, where + ".mask");
   return detection;
 }
 
 FrameBoxes read_json(const fs::path& file) {
   FrameBoxes boxes;
-  json document;
-  try {
-    document = json::parse(read_file(file, std::uintmax_t{1} << 30));
-  } catch (const json::exception& problem) {
-    throw Error(file, std::string("not JSON: ") + problem.what());
-  }
+  const json document = parse_json<json>(file, read_file(file, std::uintmax_t{1} << 30), "an object with a list \"frames\"");
   const json& frames = member(file, document, "the file", "frames");
   if (!frames.is_array()) throw Error(file, "frames is " + shown(frames) + "; expected a list");
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -9,6 +9,17 @@
 
 namespace waretwin {
 
+namespace {
+
+// The byte itself only where it cannot break a line or a terminal.
+std::string shown_letter(const std::string& text, std::size_t at) {
+  const char letter = text[at];
+  const std::string place = "letter " + std::to_string(at + 1);
+  return letter >= ' ' && letter <= '~' ? place + ", '" + letter + "'," : place;
+}
+
+}  // namespace
+
 std::vector<int> run_lengths(const cv::Mat& mask, const cv::Rect& place, const cv::Size& size) {
   WARETWIN_CHECK(mask.type() == CV_8UC1 && mask.size() == place.size() && (place & cv::Rect(cv::Point(), size)) == place,
                  "a mask inside its picture");
@@ -60,7 +71,7 @@ std::vector<int> read_compressed_runs(const std::string& text) {
     while (more) {
       if (at == text.size() || shift > kMostBits) throw Error("ends within a number, or one is too long");
       const int letter = text[at++] - 48;
-      if (letter < 0 || letter > 63) throw Error(std::string("has a letter '") + text[at - 1] + "' that stands for no six bits");
+      if (letter < 0 || letter > 63) throw Error("has " + shown_letter(text, at - 1) + " that stands for no six bits");
       value |= static_cast<std::int64_t>(letter & 0x1f) << shift;
       shift += kBits;
       more = (letter & 0x20) != 0;

@@ -26,8 +26,6 @@ cv::Mat random_mask(std::uint64_t seed, int width, int height) {
   return smooth > 0.5;
 }
 
-bool same(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::countNonZero(a != b) == 0; }
-
 TEST(MaskOutlines, OutlinesFillToTheMask) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -35,7 +33,7 @@ TEST(MaskOutlines, OutlinesFillToTheMask) {
     const cv::Size size(60, 50);
     cv::Mat placed = cv::Mat::zeros(size, CV_8UC1);
     mask.copyTo(placed(cv::Rect(7, 11, 41, 29)));
-    EXPECT_TRUE(same(test::filled(outlines(mask, {7, 11}, 0.0), size), placed));
+    EXPECT_TRUE(test::same(test::filled(outlines(mask, {7, 11}, 0.0), size), placed));
   }
 }
 
@@ -46,7 +44,7 @@ TEST(MaskOutlines, OutlinesOfASquareAndARing) {
   mask.at<std::uint8_t>(2, 2) = 0;
   const auto ring = outlines(mask, {0, 0}, 0.0);
   ASSERT_EQ(ring.size(), 1u) << "one piece, its hole joined by a seam";
-  EXPECT_TRUE(same(test::filled(ring, mask.size()), mask));
+  EXPECT_TRUE(test::same(test::filled(ring, mask.size()), mask));
 }
 
 TEST(MaskOutlines, ToleranceLeavesOutStairs) {

@@ -57,16 +57,21 @@ TEST(BoxesDetector, TakesMasks) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(cv::countNonZero(mask_picture(found[0].mask) != expected), 0) << counts;
   }
-  const std::pair<const char*, const char*> wrong[] = {{R"({"size": [4, 5], "counts": [1, 3]})", "together; expected width x height = 20"},
-                                                       {R"({"size": [4, 5], "counts": [1, -3, 22]})", "has a run of -3 pixels"},
-                                                       {R"({"size": [4, 5], "counts": "P"})", "counts ends within a number"},
-                                                       {R"({"size": [4, 5], "counts": 3})", "expected COCO's run lengths"},
-                                                       {R"({"size": [4, 0], "counts": [0]})", "size is [4,0]; expected [height, width]"},
-                                                       {R"({"counts": [0]})", "frames[0].detections[0].mask has no \"size\""}};
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"({"size": [4, 5], "counts": [1, 3]})", "together; expected width x height = 20"},
+      {R"({"size": [4, 5], "counts": [1, -3, 22]})", "has a run of -3 pixels"},
+      {R"({"size": [4, 5], "counts": "P"})", "counts ends within a number"},
+      {R"({"size": [4, 5], "counts": "131\n"})", "counts has letter 4 that stands for no six bits"},
+      {R"({"size": [4, 5], "counts": 3})", "expected COCO's run lengths"},
+      {R"({"size": [4, 0], "counts": [0]})", "size is [4,0]; expected [height, width]"},
+      {R"({"counts": [0]})", "frames[0].detections[0].mask has no \"size\""}};
   for (const auto& [mask, text] : wrong) {
     write_mask(mask);
     EXPECT_ERROR(read_boxes(file), text);
   }
+  write_mask("null");
+  ASSERT_EQ(BoxesDetector(file).detect(frame).size(), 1u);
+  EXPECT_TRUE(BoxesDetector(file).detect(frame)[0].mask.empty());
   write_mask(R"({"size": [5, 4], "counts": [20]})");
   EXPECT_ERROR(BoxesDetector(file).detect(frame), "a mask of 4 x 5 pixels in a frame of 5 x 4");
 }
@@ -144,7 +149,8 @@ TEST(BoxesDetector, SaysWhereAFileIsWrong) {
   const test::TemporaryFolder scratch;
   const auto file = scratch.path() / "boxes.json";
   const std::pair<const char*, const char*> cases[] = {
-      {"", "not JSON"},
+      {"", "boxes.json:1: is not JSON: it ends too early; expected an object with a list \"frames\""},
+      {"{\"frames\":\n 01}", "boxes.json:2: is not JSON: it goes wrong at '1}'"},
       {"[]", "frames"},
       {R"({"frames": 3})", "expected a list"},
       {R"({"frames": [{"detections": []}]})", "frames[0] has no \"stamp\""},

@@ -5,6 +5,7 @@
 #include "core/random.h"
 #include "mapper/detect/mask_runs.h"
 #include "tests/support/coco_masks.h"
+#include "tests/support/expect_error.h"
 
 namespace waretwin {
 namespace {
@@ -21,8 +22,6 @@ cv::Mat random_mask(std::uint64_t seed, int width, int height) {
   return mask;
 }
 
-bool same(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::countNonZero(a != b) == 0; }
-
 TEST(MaskRuns, ReadBack) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -33,8 +32,8 @@ TEST(MaskRuns, ReadBack) {
     mask.copyTo(placed(place));
     const MaskRuns runs{size, run_lengths(mask, place, size)};
     EXPECT_NO_THROW(expect_whole(runs));
-    EXPECT_TRUE(same(test::from_runs(runs.runs, size), placed));
-    EXPECT_TRUE(same(mask_picture(runs), placed));
+    EXPECT_TRUE(test::same(test::from_runs(runs.runs, size), placed));
+    EXPECT_TRUE(test::same(mask_picture(runs), placed));
     EXPECT_EQ(test::read_runs(compressed_runs(runs.runs)), runs.runs);
     EXPECT_EQ(read_compressed_runs(compressed_runs(runs.runs)), runs.runs);
   }
@@ -48,7 +47,7 @@ TEST(MaskRuns, FillTheWholePicture) {
   cv::Mat whole(3, 5, CV_8UC1, 255);
   const MaskRuns full{whole.size(), run_lengths(whole, {0, 0, 5, 3}, whole.size())};
   EXPECT_EQ(full.runs, (std::vector<int>{0, 15}));
-  EXPECT_TRUE(same(mask_picture(full), whole));
+  EXPECT_TRUE(test::same(mask_picture(full), whole));
   for (const std::vector<int>& runs : std::vector<std::vector<int>>{{0, 14}, {0, 15, 1}, {16, -1}, {}}) {
     EXPECT_THROW(expect_whole({whole.size(), runs}), Error);
   }
@@ -59,6 +58,9 @@ TEST(MaskRuns, WhatIsNoSuchTextIsRefused) {
   for (const std::string& text : {open, std::string("\x7f"), std::string("1 2"), std::string(9, open[0]) + "1"}) {
     EXPECT_THROW(read_compressed_runs(text), Error) << text;
   }
+  EXPECT_ERROR(read_compressed_runs("1 2"), "has letter 2, ' ', that stands for no six bits");
+  for (const char* unprintable : {"13\n", "13\xc3", "13\x7f"})
+    EXPECT_ERROR(read_compressed_runs(unprintable), "has letter 3 that stands for");
 }
 
 }  // namespace

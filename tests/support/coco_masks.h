@@ -1,4 +1,4 @@
-// The reader's side of COCO's masks, straight from the definitions.
+// The reader's side of COCO's masks and their comparison, straight from the definitions.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace waretwin::test {
+
+inline bool same(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::countNonZero(a != b) == 0; }
 
 // Even-odd at the pixels' centres, straight from the definition.
 inline cv::Mat filled(const std::vector<std::vector<double>>& polygons, const cv::Size& size) {
