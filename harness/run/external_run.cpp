@@ -211,6 +211,10 @@ ExternalRunResult run_external(const RunConfig& config, const std::shared_ptr<co
   try {
     if (!is_left(cuboids)) throw Error(cuboids, "is missing though the mapper ended well; expected a list of objects as cuboids.json");
     result.mapped = read_object_list(cuboids);
+    for (const ListedObject& object : result.mapped) {
+      if (object.cuboid.frame != "world")
+        throw Error(cuboids, "its frame is '" + object.cuboid.frame + "'; expected \"world\", the hall's");
+    }
   } catch (const Error& error) {
     result.list_problem = error.what();
     return result;
@@ -235,8 +239,9 @@ std::string failure_text(const ExternalRunResult& result, const fs::path& shown)
   if (!shell.timed_out && shell.exit_code == 0) return one_line(with_folder(result.list_problem, result.folder, shown));
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%g", result.timeout_s);
-  std::string text = shell.timed_out ? std::string("the mapper was ended after ") + seconds + " s (--mapper-timeout)"
-                                     : "the mapper ended with exit code " + std::to_string(shell.exit_code);
+  std::string text = shell.timed_out
+                         ? std::string("the mapper was ended after ") + seconds + " s (external_mapper.timeout_s, --mapper-timeout)"
+                         : "the mapper ended with exit code " + std::to_string(shell.exit_code);
   text += ", see " + (shown / "mapper/stderr.log").string();
   if (!result.last_words.empty())
     text += ": " + shortened(one_line(with_folder(result.last_words.back(), result.folder, shown)), kMostOfALine);

@@ -80,17 +80,19 @@ TEST_F(OtherMapper, IsJudgedInASuiteAndItsFailuresAreItsRunsAlone) {
       run_of("pipe", mapper("echo {recording}; mkfifo {out}/cuboids.json")) +
       run_of("slow", mapper("echo {recording} {out}; sleep 60", ", timeout_s: 0.1")) +
       run_of("unread", mapper("echo {recording}; echo '{}' > {out}/cuboids.json")) +
-      run_of("wrong", mapper("echo {recording}; echo '{\\\"objects\\\": []}' > {out}/cuboids.json") + ", pass: {recall: 1}");
+      run_of("wrong", mapper("echo {recording}; echo '{\\\"objects\\\": []}' > {out}/cuboids.json") + ", pass: {recall: 1}") +
+      run_of("wrong_frame", mapper("echo {recording}; sed s/world/map/ '" + path("truth.json").string() + "' > {out}/cuboids.json"));
   const SuiteSummary summary = suite(runs, "out");
-  ASSERT_EQ(summary.outcomes.size(), 7u);
+  ASSERT_EQ(summary.outcomes.size(), 8u);
   const auto problem = [&](std::size_t i) { return summary.outcomes[i].problems.empty() ? "" : summary.outcomes[i].problems.front(); };
   EXPECT_EQ(problem(0), "the mapper ended with exit code 7, see ended/mapper/stderr.log: no model");
   EXPECT_TRUE(summary.outcomes[1].passed()) << problem(1) << summary.outcomes[1].error;
   EXPECT_EQ(problem(2), "loop/mapper/out/cuboids.json: cannot be looked at: Too many levels of symbolic links");
   EXPECT_EQ(problem(3), "pipe/mapper/out/cuboids.json: is a folder, a pipe or the like; expected a file");
-  EXPECT_EQ(problem(4), "the mapper was ended after 0.1 s (--mapper-timeout), see slow/mapper/stderr.log");
+  EXPECT_EQ(problem(4), "the mapper was ended after 0.1 s (external_mapper.timeout_s, --mapper-timeout), see slow/mapper/stderr.log");
   EXPECT_EQ(problem(5), "unread/mapper/out/cuboids.json: key 'objects' is missing");
   EXPECT_EQ(problem(6), "recall 0, expected at least 1");
+  EXPECT_EQ(problem(7), "wrong_frame/mapper/out/cuboids.json: its frame is 'map'; expected \"world\", the hall's");
   for (const SuiteOutcome& outcome : summary.outcomes) EXPECT_EQ(outcome.error, "");
 
   for (const char* name :
@@ -102,7 +104,7 @@ TEST_F(OtherMapper, IsJudgedInASuiteAndItsFailuresAreItsRunsAlone) {
   EXPECT_TRUE(fs::exists(path("out/slow/mapper/stderr.log")));
   EXPECT_FALSE(fs::exists(path("out/wrong/mapper/recording"))) << "taken away, as nobody asked for it";
   EXPECT_FALSE(fs::exists(path("out/ended/score.json")));
-  EXPECT_NE(read_file(path("out/junit.xml")).find(R"(tests="7" failures="6" errors="0")"), std::string::npos);
+  EXPECT_NE(read_file(path("out/junit.xml")).find(R"(tests="8" failures="7" errors="0")"), std::string::npos);
   EXPECT_NE(read_file(path("out/suite.md")).find("- slow: the mapper was ended"), std::string::npos);
 
   // What has failed is tried again; what was judged, well or not, is not.
