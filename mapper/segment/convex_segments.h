@@ -31,8 +31,8 @@ struct SurfacePoint {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // towards the camera; 0 where none could be fitted
 };
 
-// By pixel of an organised picture, a plane fitted to the window around it, without the pixels whose depth differs by more than depth_share.
-// Inverse depth is a linear function of the pixel on a plane, so that a fit of it is right at any incidence. Shown for tests.
+// By pixel of an organised picture, a plane fitted to the window around it, without the pixels whose depth differs by more than
+// depth_share. Inverse depth is a linear function of the pixel on a plane, so that a fit of it is right at any incidence. Shown for tests.
 std::vector<SurfacePoint> fit_surface(const cv::Mat& depth, const Intrinsics& intrinsics, int window_px, double depth_share);
 
 }  // namespace waretwin
