@@ -16,6 +16,7 @@
 #include "harness/program/progress.h"
 #include "harness/study/preview.h"
 #include "harness/study/study.h"
+#include "harness/study/study_text.h"
 
 namespace waretwin {
 
@@ -75,17 +76,12 @@ int run(const StudyOptions& options) {
   if (summary.kinds_of_cpu > 1)
     spdlog::info("driven on {} kinds of CPU, whose kernels differ in last bits: differences between mounts may hold as much",
                  summary.kinds_of_cpu);
-  bool any_driven = false, any_failed = false;
-  for (const CandidateResult& candidate : summary.results->candidates) {
-    for (const StudyRunResult& drive : candidate.runs) {
-      (drive.error.empty() ? any_driven : any_failed) = true;
-      if (!drive.error.empty()) spdlog::error("{} in {}, seed {}: {}", candidate.name, drive.hall, drive.seed, drive.error);
-    }
-  }
+  const std::vector<std::string> failed = failed_drives(*summary.results);
+  for (const std::string& line : failed) spdlog::error("{}", line);
   std::cout << "best: " << summary.verdict << "\nresults in " << summary.folder.string()
             << " (study.md, results.csv, results.json, plots/, coverage/";
   std::cout << (summary.results->best ? ", best/)\n" : ")\n");
-  return any_failed && !any_driven ? 1 : 0;
+  return !failed.empty() && static_cast<int>(failed.size()) == summary.runs ? 1 : 0;
 }
 
 }  // namespace

@@ -246,15 +246,14 @@ std::string runs_csv(const StudyConfig& study, const StudyResults& results) {
   return csv;
 }
 
-std::string failed_drives_text(const StudyResults& results) {
-  std::string text;
+std::vector<std::string> failed_drives(const StudyResults& results) {
+  std::vector<std::string> lines;
   for (const CandidateResult& candidate : results.candidates) {
     for (const StudyRunResult& run : candidate.runs) {
-      if (!run.error.empty())
-        text += "- " + candidate.name + ", " + run.hall + ", seed " + std::to_string(run.seed) + ": " + run.error + "\n";
+      if (!run.error.empty()) lines.push_back(candidate.name + " in " + run.hall + ", seed " + std::to_string(run.seed) + ": " + run.error);
     }
   }
-  return text.empty() ? "" : "**Not driven to the end:**\n\n" + text + "\n";
+  return lines;
 }
 
 std::string study_markdown(const StudySetup& setup, const StudyResults& results) {
@@ -268,7 +267,12 @@ std::string study_markdown(const StudySetup& setup, const StudyResults& results)
           (study.halls.size() > 1 ? "s" : "") + ", " + std::to_string(study.seeds.size()) + " seed" + (study.seeds.size() > 1 ? "s" : "") +
           "; " + std::to_string(count(CandidateState::kMapped)) + " mapped, " + std::to_string(count(CandidateState::kScreenedOut)) +
           " looked at by coverage alone, " + std::to_string(count(CandidateState::kRefused)) + " refused by constraints.\n\n";
-  text += "**Best**: " + verdict_text(study, results) + ".\n\n" + failed_drives_text(results);
+  text += "**Best**: " + verdict_text(study, results) + ".\n\n";
+  if (const std::vector<std::string> failed = failed_drives(results); !failed.empty()) {
+    text += "**Not driven to the end:**\n\n";
+    for (const std::string& line : failed) text += "- " + line + "\n";
+    text += "\n";
+  }
   if (results.best) {
     text += "`best/` has its configuration for each hall: `waretwin run SCENARIO --out OUT --config best/HALL.yaml` drives it.\n\n";
     const CandidateResult& best = results.candidates[*results.best];

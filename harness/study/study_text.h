@@ -17,7 +17,10 @@ std::string study_csv(const StudyConfig& study, const StudyResults& results);
 // A row a drive: all measures.
 std::string runs_csv(const StudyConfig& study, const StudyResults& results);
 
-// For people: the best mount and its advantage, the front, the table, main effects.
+// A line a drive that did not end well, and why: "c012 in agiprobot, seed 1: ...".
+std::vector<std::string> failed_drives(const StudyResults& results);
+
+// For people: the best mount and its advantage, drives that failed, the front, the table, main effects.
 std::string study_markdown(const StudySetup& setup, const StudyResults& results);
 
 // "c012 (height 1.2, pitch 30) has mean_iou3d 0.97; the baseline (..) 0.93: +0.04 (95 % ..: +0.01 to +0.06)", or why there is no best.
